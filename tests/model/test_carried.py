@@ -87,6 +87,11 @@ RESULTS = {
     "LinearModel.submodel": lambda case, **o: case.linearize(AT, **o).submodel(("beam", "chord")),
 }
 TAKING_A_RESULT = {"boundary_lines.boundary_lines"}
+# With a shaft angle or a load factor, which not all other options go with.
+ABOUT_A_PERIODIC_TRIM = {
+    "Case.around": lambda case, **o: case.around(AT, **o),
+    "Case.floquet": lambda case, **o: case.floquet(AT, **o),
+}
 OF_A_ROTOR = {"rotor_model"}  # alone: the options, and no case
 
 
@@ -134,7 +139,16 @@ def test_the_list_of_results_is_complete():
             for p in inspect.signature(entry).parameters.values()
         )
     }
-    assert taking - set(RESULTS) == TAKING_A_RESULT | OF_A_ROTOR
+    assert taking - set(RESULTS) == TAKING_A_RESULT | OF_A_ROTOR | set(ABOUT_A_PERIODIC_TRIM)
+
+
+@pytest.mark.parametrize("name", ABOUT_A_PERIODIC_TRIM)
+def test_results_about_a_periodic_trim_say_its_flight(name):
+    given = {"shaft_angle": 0.02, "load_factor": 1.5, "locked": "gimbal"}
+    own = stamp_of(ABOUT_A_PERIODIC_TRIM[name](CASE, **given))
+    assert json.loads(own["options"]) == expected(CASE, **given)
+    told = stamp.line(own)
+    assert "shaft angle 0.02 rad" in told and "load factor 1.5" in told
 
 
 @pytest.mark.parametrize("name", RESULTS)

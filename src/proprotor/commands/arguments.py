@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import click
 from click.shell_completion import CompletionItem
-from click.types import StringParamType
+from click.types import FloatParamType, StringParamType
 
 from proprotor.case import Case, list_cases, load_case
 from proprotor.commands.exit_codes import EXIT_CODES
@@ -70,7 +70,7 @@ class Request(NamedTuple):
         return load_case(self.name, self.settings)
 
 
-class Angle(click.ParamType):
+class Angle(FloatParamType):
     """The type of an angle with its unit, such as "5deg"; rad without a unit."""
 
     name = "angle"
@@ -83,7 +83,7 @@ class Angle(click.ParamType):
         try:
             return to_si(value, "rad")
         except InputError as error:
-            self.fail(str(error), param, ctx)
+            self.fail(f"{value!r} {error.rule}", param, ctx)
 
 
 class CaseName(StringParamType):

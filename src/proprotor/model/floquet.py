@@ -66,8 +66,9 @@ def exponents(model: LinearModel, roots: Array, passage: Array) -> Array:
     for point in np.ndindex(roots.shape[:-1]):
         known = np.isfinite(roots[point])
         if known.any() and np.isfinite(around[point]).all():
-            carried = transition(around[point], periods[point])
-            found[point][known] = _nearest(roots[point][known], carried, periods[point])
+            period = float(periods[point])
+            carried = transition(around[point], period)
+            found[point][known] = _nearest(roots[point][known], carried, period)
     return found
 
 

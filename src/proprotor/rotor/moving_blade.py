@@ -7,7 +7,7 @@ the rate of a vector in inertial axes is its derivative around the turn and the 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -163,13 +163,12 @@ class _Around:
         around = cls(sections, options, given, shape, rotor_speed, speed, points, points, pitch)
         rates = around.rate(points)
         rates[:, :, -1, _N] += along_blade(flight.velocity, shape[1])
-        object.__setattr__(around, "rates", rates)
-        return around
+        return replace(around, rates=rates)
 
     def rate(self, vectors: Array) -> Array:
         """Return the rate in inertial axes of vectors (points, azimuths, ..., 3) along the blade's axes."""
         speed = self.speed.reshape(*self.shape, *(1,) * (vectors.ndim - 3), 3)
-        return self.rate_of_number(vectors) + np.cross(speed, vectors)
+        return np.asarray(self.rate_of_number(vectors) + np.cross(speed, vectors))
 
     def rate_of_number(self, numbers: Array) -> Array:
         """Return the rate of numbers (points, azimuths, ...)."""
@@ -311,7 +310,7 @@ class _Air:
             doubts=doubts,
         )
         for name in doubts:
-            doubts[name] = doubts[name].reshape(blade.shape).any(axis=1)
+            doubts[name] = np.asarray(doubts[name].reshape(blade.shape).any(axis=1))
         segments |= found
         derivatives = blade.of_segments(evaluate(airloads.load_derivatives, segments), 2)
         steady = blade.of_segments(evaluate(airloads.steady_loads, segments)[..., airloads.TRIM], 1)
@@ -400,7 +399,8 @@ def _at_each_azimuth(quantities: Mapping[str, Any], motion: Motion) -> dict[str,
     given |= {name: value.reshape(-1) for name, value in state.items()}
     given["pitch"] = blade_pitch(given, given)
     given |= evaluate(moving.blade_angles, given)._asdict()
-    return given | evaluate(moving.tilt_of_yoke, given)._asdict()
+    given |= evaluate(moving.tilt_of_yoke, given)._asdict()
+    return given
 
 
 def _points(given: Mapping[str, Any], shape: tuple[int, int]) -> Array:
@@ -413,7 +413,7 @@ def _points(given: Mapping[str, Any], shape: tuple[int, int]) -> Array:
 
 def _joined(inertia: Array, vectors: Array) -> Array:
     """Return the mass times an arm, integrated, of vectors (points, azimuths, arm, column, 3) per unit of an arm."""
-    return np.einsum("pnab,pnbjx->pnajx", inertia, vectors)
+    return np.asarray(np.einsum("pnab,pnbjx->pnajx", inertia, vectors))
 
 
 def _rows(vectors: Array) -> Array:
