@@ -60,7 +60,7 @@ PARTS = {
     "trim: the rest": [(rotor_model, "solve_trim")],
     "matrices of the rotor": [(rotor_model.fused, "rotor_matrices")],
     "rotor on its support": [(configuration, "mount")],
-    "state matrix": [(modes, "have_modes"), (modes, "first_order")],
+    "state matrix": [(modes, "have_modes"), (modes, "first_order_at")],
     "eigenvalues (LAPACK)": [(np.linalg, "eigvals")],
 }
 REST = "all else: inputs, checks, order, results"

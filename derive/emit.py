@@ -5,8 +5,10 @@ Expressions are printed here, by one printer; the templates only lay them out; t
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import difflib
+import functools
 import hashlib
 import itertools
 import re
@@ -28,6 +30,7 @@ from derive.files import write_whole
 from derive.function import Function
 from derive.fused import FusedFunction, functions_of_rotor
 from derive.fused_trim import functions_of_trim
+from derive.plain import ALL_ROTORS, PLAIN_ROTORS, Catalogue
 from derive.plan import print_line
 from derive.published import DROPPED_TERMS
 from derive.rotor import OF_SEGMENTS, OPTIONAL, Assembly, Call
@@ -259,45 +262,74 @@ def _describe_fused(function: FusedFunction) -> dict[str, Any]:
             }
             for symbol in function.arguments
         ],
-        "lines": [{"name": name, "code": print_line(value)} for name, value in _lines_of(function)],
+        "lines": _lines_of(function),
         "results": function.plan.results,
         "layouts": list(function.plan.layouts.items()),
     }
 
 
-def _lines_of(function: FusedFunction) -> Iterator[tuple[str, sp.Expr]]:
-    """Lines of a plan; a result that goes into an array is put there in a line of its own if later lines need it."""
-    results, lines = function.plan.results, function.plan.lines
-    needed = set().union(*(value.free_symbols for _, value in lines))
-    for name, value in lines:
-        place = f"into[{results.index(name)}]" if function.into and name in results else name
-        if place != name and sp.Symbol(name, real=True) in needed:
-            yield name, value
-            yield place, sp.Symbol(name, real=True)
-        else:
-            yield place, value
+def _lines_of(function: FusedFunction) -> list[dict[str, str]]:
+    """Lines of a plan as code."""
+    results = function.plan.results if function.into else []
+    return [
+        {"name": name, "code": _put(print_line(value), results.index(name))}
+        if name in results
+        else {"name": name, "code": print_line(value)}
+        for name, value in function.plan.lines
+    ]
+
+
+_OPERATIONS = {
+    ast.Add: "add",
+    ast.Sub: "subtract",
+    ast.Mult: "multiply",
+    ast.Div: "divide",
+    ast.USub: "negative",
+}
+
+
+def _put(code: str, place: int) -> str:
+    """Code that puts a result into an array: the last operation does so itself, which takes no copy."""
+    last = ast.parse(code, mode="eval").body
+    if isinstance(last, ast.BinOp):
+        given = f"{ast.unparse(last.left)}, {ast.unparse(last.right)}"
+    elif isinstance(last, ast.UnaryOp):
+        given = ast.unparse(last.operand)
+    else:
+        return f"np.positive({code}, into[{place}])"
+    return f"np.{_OPERATIONS[type(last.op)]}({given}, into[{place}])"
 
 
 _FUSED = {
-    "rotor": (
-        "A whole rotor as plans of few operations",
-        "`proprotor_equations.rotor`",
-        functions_of_rotor,
-    ),
-    "trim": (
-        "The trim of a blade as plans of few operations",
-        "`proprotor_equations.trim`, `section` and `airloads`",
-        functions_of_trim,
-    ),
+    "plain": ("Plain rotors, without linkages and drive train, as plans of few operations", PLAIN_ROTORS),
+    "general": ("All rotors as plans of few operations", ALL_ROTORS),
 }
 
 
 def render_fused(module: str) -> str:
-    """Text of a module of fused functions."""
-    title, readable, functions = _FUSED[module]
-    described = [_describe_fused(function) for function in functions()]
-    given = {"title": title, "readable": readable, "functions": described}
+    """Text of a module of fused functions; functions that are those of plain rotors are taken from these."""
+    title, rotors = _FUSED[module]
+    functions, plain = (_fused_functions(kind) for kind in (rotors, PLAIN_ROTORS))
+    shared = [] if rotors is PLAIN_ROTORS else [one for one in functions if one in plain]
+    given = {
+        "title": title,
+        "functions": [_describe_fused(function) for function in functions if function not in shared],
+        "shared": _names_of(shared),
+        "names": _names_of(functions),
+        "takes_array": any(function.into for function in functions if function not in shared),
+        "absent": [symbol.name for symbol in QUANTITIES if symbol in rotors.absent],
+    }
     return _rendered("fused.py.jinja", f"fused/{module}.py", **given)
+
+
+def _names_of(functions: list[FusedFunction]) -> list[str]:
+    """Names of functions and of their tables."""
+    return sorted(name for function in functions for name in (function.name.upper(), function.name))
+
+
+@functools.cache
+def _fused_functions(rotors: Catalogue) -> list[FusedFunction]:
+    return [*functions_of_rotor(rotors), *functions_of_trim(rotors)]
 
 
 def _rendered(template: str, name: str, **given: Any) -> str:

@@ -21,8 +21,7 @@ from derive import kinematics as kin
 from derive import multiblade
 from derive.columns import Columns, Combination
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
-from derive.equations import consistent_functions
-from derive.function import Function
+from derive.plain import Catalogue, entries_of
 from derive.plan import Matrix, Place, Plan, Results, Steps, plan
 from derive.rotor import Assembly, Call, Code
 from derive.symbols import QUANTITIES
@@ -46,14 +45,12 @@ class Group:
     members: tuple[str, ...]
 
 
-_CALLED = {(sp.cos, sp.sin): ("cos", "sin"), (sp.atan,): ("sqrt", "arctan")}
-
-
 @dataclass(frozen=True)
 class FusedFunction:
     """A plan with its name, summary and arguments, groups of numbers first.
 
-    With `into` the function puts its results into an array that it takes, and otherwise returns them.
+    With `into` the function is one of arrays, and puts its results into an array that it takes; otherwise it is one of
+    arrays or plain numbers, and returns them.
     """
 
     name: str
@@ -65,46 +62,37 @@ class FusedFunction:
 
     @property
     def called(self) -> tuple[str, ...]:
-        """Functions of one number that the plan calls."""
-        found = [value for _, value in self.plan.lines]
-        return next((names for kinds, names in _CALLED.items() if any(v.has(*kinds) for v in found)), ())
-
-
-def of_catalogue(module: str, name: str) -> Function:
-    return next(function for function in consistent_functions(module) if function.name == name)
-
-
-def entries_of(function: Function) -> dict[Place, sp.Expr]:
-    return {place: entry.value for place, entry in function.entries.items()}
+        """Functions of one number that the plan takes."""
+        return ("cos", "sin") if any(value.has(sp.cos, sp.sin) for _, value in self.plan.lines) else ()
 
 
 # W, U and G
 
 
 @functools.cache
-def _virtual() -> tuple[Matrix, dict[str, Combination]]:
+def _virtual(rotors: Catalogue) -> tuple[Matrix, dict[str, Combination]]:
     """W of the independent rows of the work, and every row in these."""
     columns = Columns(names(SEGMENT_LOADS))
-    found = columns.combinations(of_catalogue("airloads", "virtual_motion"))
+    found = columns.combinations(rotors.function("airloads", "virtual_motion"))
     return columns.matrix, found
 
 
 @functools.cache
-def _motions() -> tuple[Matrix, dict[str, dict[str, Combination]]]:
+def _motions(rotors: Catalogue) -> tuple[Matrix, dict[str, dict[str, Combination]]]:
     """U of the independent motions, and the columns of every function of motions in these."""
     columns = Columns(names(SEGMENT_MOTIONS))
     prefixes = {"rate_motion": "rate_", "gust_motion": "gust_", "displacement_motion": "change_"}
     found = {
-        name: columns.combinations(of_catalogue("airloads", name), prefix)
+        name: columns.combinations(rotors.function("airloads", name), prefix)
         for name, prefix in prefixes.items()
     }
     return columns.matrix, found
 
 
 @functools.cache
-def _geometric() -> tuple[Matrix, dict[Place, sp.Expr]]:
+def _geometric(rotors: Catalogue) -> tuple[Matrix, dict[Place, sp.Expr]]:
     """G of a segment: its different entries as a column, and each entry as one of these with its sign."""
-    function = of_catalogue("airloads", "geometric_stiffness")
+    function = rotors.function("airloads", "geometric_stiffness")
     results = Results()
     layout = results.layout("geometric", Matrix(function.rows, function.columns, entries_of(function)))
     different = list(results.named)
@@ -126,21 +114,21 @@ def _work(row: str, column: str) -> sp.Symbol:
     return sp.Symbol(f"{row}_{column}", real=True)
 
 
-def _air(term: Code) -> dict[Place, sp.Expr]:
+def _air(rotors: Catalogue, term: Code) -> dict[Place, sp.Expr]:
     """Entries of one of the blade's airload matrices, a product of the arrays of the segments."""
     name = term.removeprefix("air.")
-    product = of_catalogue("airloads", {"gusts": "gust_loads"}.get(name, name)).product
+    product = rotors.function("airloads", {"gusts": "gust_loads"}.get(name, name)).product
     parts = []
     for part in sp.MatAdd.make_args(product):
         factor, matrices = part.as_coeff_matrices()
         last = matrices[-1].name
-        entries = _geometric()[1] if last == "geometric_stiffness" else _work_entries(last)
+        entries = _geometric(rotors)[1] if last == "geometric_stiffness" else _work_entries(rotors, last)
         parts.append({place: factor * value for place, value in entries.items()})
     return _sum(parts)
 
 
-def _work_entries(motion: str) -> dict[Place, sp.Expr]:
-    rows, columns = _virtual()[1], _motions()[1][motion]
+def _work_entries(rotors: Catalogue, motion: str) -> dict[Place, sp.Expr]:
+    rows, columns = _virtual(rotors)[1], _motions(rotors)[1][motion]
     return {
         (row, column): sum(
             (
@@ -155,19 +143,19 @@ def _work_entries(motion: str) -> dict[Place, sp.Expr]:
     }
 
 
-def _blade() -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade, Blade]:
+def _blade(rotors: Catalogue) -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade, Blade]:
     """Return named values, and the entries of one blade's matrices without airloads and of airloads alone.
 
     `rotor.blade_matrices` adds the same functions.
     """
     steps: list[tuple[sp.Symbol, sp.Expr]] = []
     blade, air = {}, {}
-    for line in cast(Assembly, of_catalogue("rotor", "blade_matrices")).lines:
-        functions = [term.function for term in line.terms if isinstance(term, Call)]
+    for line in cast(Assembly, rotors.function("rotor", "blade_matrices")).lines:
+        functions = [rotors.of(term.function) for term in line.terms if isinstance(term, Call)]
         plain = [function for function in functions if not isinstance(function, Assembly)]
         steps += [step for function in plain for step in function.steps]
         blade[line.result] = _sum(entries_of(function) for function in plain)
-        air[line.result] = _sum(_air(term) for term in line.terms if isinstance(term, Code))
+        air[line.result] = _sum(_air(rotors, term) for term in line.terms if isinstance(term, Code))
     return steps, blade, air
 
 
@@ -183,7 +171,7 @@ def _sum(parts: Iterable[Mapping[Place, sp.Expr]]) -> dict[Place, sp.Expr]:
 # The rotor
 
 
-def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
+def _fixed_frame(rotors: Catalogue, blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
     """Sum over the blades as `rotor.fixed_frame` does, or with `of_blades` without engine, shaft and swashplate."""
     entries = {
         base[_INDEX[row], _INDEX[column]]: blade[name].get((row, column), sp.Integer(0))
@@ -192,7 +180,7 @@ def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
         for column in (multiblade.GUST_INDEX if name == "gusts" else kin.COORDINATES)
     }
     matrices: dict[str, Matrix] = {}
-    assembly = cast(Assembly, of_catalogue("rotor", "fixed_frame"))
+    assembly = cast(Assembly, rotors.function("rotor", "fixed_frame"))
     for line in assembly.lines:
         first = line.terms[0]
         if isinstance(first, Code):
@@ -200,7 +188,7 @@ def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
             both = {**left.entries, **right.entries}
             matrices[line.result] = Matrix(left.rows, left.columns + right.columns, both)
             continue
-        functions = [term.function for term in line.terms if isinstance(term, Call)]
+        functions = [rotors.of(term.function) for term in line.terms if isinstance(term, Call)]
         total = _sum(
             entries_of(function) for function in functions if function.blade_matrices or not of_blades
         )
@@ -209,21 +197,27 @@ def _fixed_frame(blade: Blade, of_blades: bool = False) -> dict[str, Matrix]:
     return {name: matrices[name] for name in assembly.results}
 
 
-def in_vacuum() -> FusedFunction:
+def in_vacuum(rotors: Catalogue) -> FusedFunction:
     """M, C, K and B of a whole rotor without airloads."""
-    steps, blade, _ = _blade()
-    return _fused("in_vacuum", steps, _fixed_frame(blade), in_vacuum)
+    steps, blade, _ = _blade(rotors)
+    return _fused("in_vacuum", steps, _fixed_frame(rotors, blade), in_vacuum)
 
 
 @functools.cache
-def of_airloads() -> FusedFunction:
+def of_airloads(rotors: Catalogue) -> FusedFunction:
     """What airloads add to C, K and B of a whole rotor, from the work of the airloads."""
-    _, _, air = _blade()
-    matrices = {name: matrix for name, matrix in _fixed_frame(air, of_blades=True).items() if name != "M"}
+    _, _, air = _blade(rotors)
+    matrices = {
+        name: matrix for name, matrix in _fixed_frame(rotors, air, of_blades=True).items() if name != "M"
+    }
     made = _fused("of_airloads", [], matrices, of_airloads)
     used = {symbol.name for _, value in made.plan.lines for symbol in value.free_symbols}
-    work = tuple(_work(row, column).name for row in _virtual()[0].columns for column in _motions()[0].columns)
-    geometric = tuple(name for name in _geometric()[0].rows if name in used)
+    work = tuple(
+        _work(row, column).name
+        for row in _virtual(rotors)[0].columns
+        for column in _motions(rotors)[0].columns
+    )
+    geometric = tuple(name for name in _geometric(rotors)[0].rows if name in used)
     groups = (
         Group("work", "the work of the airloads, W^T L U summed over the segments, row by row", work),
         Group("geometric", "the results for G, summed over the segments", geometric),
@@ -231,11 +225,11 @@ def of_airloads() -> FusedFunction:
     return dataclasses.replace(made, groups=groups)
 
 
-def segment() -> FusedFunction:
+def segment(rotors: Catalogue) -> FusedFunction:
     """Arrays of one segment: W, L and U of the independent motions, and what the rotor needs of G as a column."""
-    virtual, motion, geometric = _virtual()[0], _motions()[0], _geometric()[0]
-    derivatives = entries_of(of_catalogue("airloads", "load_derivatives"))
-    _, needed = of_airloads().groups  # the rest of G vanishes in the sum over the blades
+    virtual, motion, geometric = _virtual(rotors)[0], _motions(rotors)[0], _geometric(rotors)[0]
+    derivatives = rotors.entries("airloads", "load_derivatives")
+    _, needed = of_airloads(rotors).groups  # the rest of G vanishes in the sum over the blades
     entries = {place: value for place, value in geometric.entries.items() if place[0] in needed.members}
     matrices = {
         "virtual_motion": virtual,
@@ -243,12 +237,12 @@ def segment() -> FusedFunction:
         "motion": motion,
         "geometric_stiffness": Matrix(needed.members, geometric.columns, entries),
     }
-    return _fused("segment", of_catalogue("airloads", "segment_geometry").steps, matrices, segment)
+    return _fused("segment", rotors.function("airloads", "segment_geometry").steps, matrices, segment)
 
 
-def named_values(module: str, name: str) -> FusedFunction:
+def named_values(rotors: Catalogue, module: str, name: str) -> FusedFunction:
     """Plan the named values of a function."""
-    function = of_catalogue(module, name)
+    function = rotors.function(module, name)
     made = plan(function.steps, {}, [symbol.name for symbol in function.values])
     return FusedFunction(name, function.summary, made, arguments(made, function.steps))
 
@@ -270,11 +264,11 @@ def arguments(made: Plan, steps: Steps) -> list[sp.Symbol]:
     return [symbol for symbol in QUANTITIES if symbol in needed]
 
 
-def functions_of_rotor() -> list[FusedFunction]:
+def functions_of_rotor(rotors: Catalogue) -> list[FusedFunction]:
     """Return all fused functions of the rotor."""
     return [
-        named_values("flap_lag_springs", "effective_stiffness"),
-        in_vacuum(),
-        segment(),
-        of_airloads(),
+        named_values(rotors, "flap_lag_springs", "effective_stiffness"),
+        in_vacuum(rotors),
+        segment(rotors),
+        of_airloads(rotors),
     ]

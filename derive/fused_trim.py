@@ -17,8 +17,9 @@ import sympy as sp
 from derive import airloads, lift_slope, section
 from derive import symbols as s
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
-from derive.fused import FusedFunction, Group, arguments, entries_of, named_values, of_catalogue
-from derive.plan import Matrix, Place, Steps, plan
+from derive.fused import FusedFunction, Group, arguments, named_values
+from derive.plain import Catalogue, entries_of
+from derive.plan import Matrix, Place, Steps, plan, without_other_names
 from derive.trim import HINGED, STEADY_ROWS
 
 zero_lift_angle = s.quantity("zero_lift_angle", r"\alpha_0", "rad", "angle of attack without lift")
@@ -34,37 +35,25 @@ _ALONG_LINES = ("virtual_motion", "displacement_motion", "geometric_stiffness")
 _LOADS, _MOTIONS = names(SEGMENT_LOADS), names(SEGMENT_MOTIONS)
 
 
-def line() -> FusedFunction:
+def line(rotors: Catalogue) -> FusedFunction:
     """Geometry of a segment at trim, and the velocity of the air at r = 0 and per unit radius along it."""
-    geometry = of_catalogue("airloads", "segment_geometry").steps
-    velocity = entries_of(of_catalogue("airloads", "trim_velocity"))
+    geometry = rotors.function("airloads", "segment_geometry").steps
+    velocity = rotors.entries("airloads", "trim_velocity")
     air = [(sp.Symbol(row, real=True), value) for (row, _), value in velocity.items()]
-    used = {symbol for name in _ALONG_LINES for symbol in of_catalogue("trim", name).needed}
+    used = {symbol for name in _ALONG_LINES for symbol in rotors.function("trim", name).needed}
     wanted = [symbol.name for symbol, _ in [*(step for step in geometry if step[0] in used), *air]]
     made = plan([*geometry, *air], {}, wanted)
     return FusedFunction("line", _summary(line), made, arguments(made, [*geometry, *air]))
 
 
-def section_loads() -> FusedFunction:
+def section_loads(rotors: Catalogue) -> FusedFunction:
     """Loads of a section with a straight lift line per unit span, their derivatives, and two numbers for doubts."""
-    steps = _without_other_names(_steps_of_section())
+    steps, _ = without_other_names(rotors.steps(_steps_of_section()))
     known = {symbol for symbol, _ in steps}
     wanted = [symbol.name for symbol in section.SECTION_LOADS.values() if symbol in known]
     wanted += [section.lift_incidence.name, section.mach.name]
     made = plan(steps, {}, wanted, short_lived=True)
     return FusedFunction("section_loads", _summary(section_loads), made, arguments(made, steps), into=True)
-
-
-def _without_other_names(steps: Steps) -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Leave out the steps that are zero or another name of an earlier step."""
-    same: dict[sp.Symbol, sp.Expr] = {}
-    kept = []
-    for symbol, value in _replaced(steps, same):
-        if value == 0 or value.is_Symbol:
-            same[symbol] = value
-        else:
-            kept.append((symbol, value))
-    return kept
 
 
 def _steps_of_section() -> list[tuple[sp.Symbol, sp.Expr]]:
@@ -108,43 +97,49 @@ def _replaced(steps: Steps, new: dict[sp.Symbol, sp.Expr]) -> Iterator[tuple[sp.
     return ((symbol, sp.sympify(value).xreplace(new)) for symbol, value in steps)
 
 
-def work() -> FusedFunction:
+def work(rotors: Catalogue) -> FusedFunction:
     """Virtual work of a segment's steady airloads on the balances, and minus its change with coning, lag and pitch."""
-    virtual = entries_of(of_catalogue("trim", "virtual_motion"))
-    steady = entries_of(of_catalogue("airloads", "steady_loads"))
-    steps, of_motion = _loads_of_motion()
+    virtual = rotors.entries("trim", "virtual_motion")
+    steady = rotors.entries("airloads", "steady_loads")
+    steps, of_motion = _loads_of_motion(rotors)
     done = {
         (row, "trim"): sum(virtual.get((load, row), 0) * steady.get((load, "trim"), 0) for load in _LOADS)
         for row in STEADY_ROWS
     }
-    geometric = entries_of(of_catalogue("trim", "geometric_stiffness"))
+    geometric = rotors.entries("trim", "geometric_stiffness")
     changes = {
         (row, name): -geometric.get((row, name), 0)
         - sum(virtual.get((load, row), 0) * of_motion.get((load, name), 0) for load in _LOADS)
         for row in STEADY_ROWS
         for name in HINGED
     }
+    none = {
+        moment: sp.Integer(0) for moment in airloads.MOMENTS.values() if moment.name not in _moments(rotors)
+    }
+    done, changes = (
+        {place: value.xreplace(none) for place, value in part.items()} for part in (done, changes)
+    )
     matrices = {"work": _matrix(("trim",), done), "work_slopes": _matrix(HINGED, changes)}
-    made = plan(steps, matrices, short_lived=True)
+    made = plan(list(_replaced(steps, none)), matrices, short_lived=True)
     groups = (
-        Group("line", "the results of `line`", tuple(line().plan.results)),
-        Group("moments", "the moments of r^0, r^1 and r^2 of each load of `section_loads`", _moments()),
+        Group("line", "the results of `line`", tuple(line(rotors).plan.results)),
+        Group("moments", "the moments of r^0, r^1 and r^2 of each load of `section_loads`", _moments(rotors)),
     )
     in_groups = {name for group in groups for name in group.members}
     others = [symbol for symbol in arguments(made, steps) if symbol.name not in in_groups]
     return FusedFunction("work", _summary(work), made, others, groups)
 
 
-def _moments() -> tuple[str, ...]:
+def _moments(rotors: Catalogue) -> tuple[str, ...]:
     """Return the names of the radial moments of the loads of `section_loads`, in the order of these loads."""
-    loads = section_loads().plan.results[:-2]  # without the two numbers for doubts
+    loads = section_loads(rotors).plan.results[:-2]  # without the two numbers for doubts
     return tuple(airloads.MOMENTS[load, power].name for load in loads for power in airloads.POWERS)
 
 
-def _loads_of_motion() -> tuple[list[tuple[sp.Symbol, sp.Expr]], dict[Place, sp.Expr]]:
+def _loads_of_motion(rotors: Catalogue) -> tuple[list[tuple[sp.Symbol, sp.Expr]], dict[Place, sp.Expr]]:
     """Return L U by steps: loads of a segment per unit of coning, lag and pitch, those that are not zero."""
-    derivatives = entries_of(of_catalogue("airloads", "load_derivatives"))
-    motion = entries_of(of_catalogue("trim", "displacement_motion"))
+    derivatives = rotors.entries("airloads", "load_derivatives")
+    motion = rotors.entries("trim", "displacement_motion")
     named = {
         (row, column): value if value.is_number else sp.Symbol(f"motion_{row}_{column}", real=True)
         for (row, column), value in motion.items()
@@ -160,15 +155,22 @@ def _loads_of_motion() -> tuple[list[tuple[sp.Symbol, sp.Expr]], dict[Place, sp.
     return steps, found
 
 
-def balance() -> FusedFunction:
+def balance(rotors: Catalogue) -> FusedFunction:
     """Steady balance of one blade without airloads, and its change with coning, lag, elastic pitch and collective."""
-    residual, jacobian = of_catalogue("trim", "residual"), of_catalogue("trim", "jacobian")
+    residual, jacobian = rotors.function("trim", "residual"), rotors.function("trim", "jacobian")
     matrices = {
         "residual": _matrix(("trim",), entries_of(residual)),
         "slopes": _matrix(jacobian.columns, entries_of(jacobian)),
     }
     made = plan([], matrices)
     return FusedFunction("balance", _summary(balance), made, arguments(made, []))
+
+
+def precone_load(rotors: Catalogue) -> FusedFunction:
+    """Precone's part in the steady balance of the undeflected blade."""
+    function = rotors.function("trim", "precone_load")
+    made = plan([], {"precone_load": Matrix(function.rows, function.columns, entries_of(function))})
+    return FusedFunction("precone_load", _summary(precone_load), made, arguments(made, []))
 
 
 def _matrix(columns: Sequence[str], entries: dict[Place, sp.Expr]) -> Matrix:
@@ -179,6 +181,13 @@ def _summary(of: object) -> str:
     return (of.__doc__ or "").partition("\n")[0]
 
 
-def functions_of_trim() -> list[FusedFunction]:
+def functions_of_trim(rotors: Catalogue) -> list[FusedFunction]:
     """Return all fused functions of the trim."""
-    return [named_values("inertia", "trim_integrals"), line(), section_loads(), work(), balance()]
+    return [
+        named_values(rotors, "inertia", "trim_integrals"),
+        line(rotors),
+        section_loads(rotors),
+        work(rotors),
+        balance(rotors),
+        precone_load(rotors),
+    ]

@@ -55,9 +55,10 @@ def plan(
     The steps that `values` names are results as well, before those of the matrices. With `short_lived` the other steps
     take registers like temporaries, so that they fill no memory after their last use.
     """
+    kept, same = without_other_names(steps, values)
     results = Results()
-    layouts = {name: results.layout(name, matrix) for name, matrix in matrices.items()}
-    named = [(symbol.name, sp.sympify(value)) for symbol, value in steps]
+    layouts = {name: results.layout(name, matrix, same) for name, matrix in matrices.items()}
+    named = [(symbol.name, value) for symbol, value in kept]
     outcomes = list(results.named.items())
     shared, reduced = sp.cse([value for _, value in named + outcomes], symbols=_temporaries())
     lines = dict(zip([name for name, _ in named + outcomes], reduced, strict=True))
@@ -67,6 +68,24 @@ def plan(
     return Plan(_with_registers(list(_in_order(made, wanted)), made, names), wanted, layouts)
 
 
+def without_other_names(
+    steps: Steps, wanted: Sequence[str] = ()
+) -> tuple[list[tuple[sp.Symbol, sp.Expr]], dict[sp.Symbol, sp.Expr]]:
+    """Return the steps without those that are zero or another name of an earlier step, and what these are.
+
+    The steps that `wanted` names stay.
+    """
+    same: dict[sp.Symbol, sp.Expr] = {}
+    kept = []
+    for symbol, value in steps:
+        value = sp.sympify(value).xreplace(same)
+        if (value == 0 or value.is_Symbol) and symbol.name not in wanted:
+            same[symbol] = value
+        else:
+            kept.append((symbol, value))
+    return kept, same
+
+
 class Results:
     """Different results, named after the first place that each has in a matrix."""
 
@@ -74,10 +93,15 @@ class Results:
         self.named: dict[str, sp.Expr] = {}
         self._numbers: dict[sp.Expr, int] = {}
 
-    def layout(self, name: str, matrix: Matrix) -> list[list[int]]:
-        """Lay a matrix out, and add what is neither equal nor opposite to an earlier result."""
+    def layout(
+        self, name: str, matrix: Matrix, same: Mapping[sp.Symbol, sp.Expr] | None = None
+    ) -> list[list[int]]:
+        """Lay a matrix out, and add what is neither equal nor opposite to an earlier result.
+
+        `same` has what symbols of the entries are.
+        """
         numbers = {
-            (row, column): self._number(name, (row, column), value)
+            (row, column): self._number(name, (row, column), value.xreplace(same or {}))
             for (row, column), value in matrix.entries.items()
             if row in matrix.rows and column in matrix.columns
         }
@@ -178,7 +202,7 @@ class PlanPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no types
         if base.is_Symbol and exponent in (2, 3):
             return "*".join([self._print(base)] * int(exponent))
         if abs(exponent) == sp.Rational(1, 2):
-            return f"{'1/' if exponent.is_negative else ''}sqrt({self._print(base)})"
+            return f"{'1/' if exponent.is_negative else ''}np.sqrt({self._print(base)})"
         if exponent != -1:
             raise ValueError(f"cannot print {expr} in a plan")
         printed: str = super()._print_Pow(expr, rational=rational)
@@ -188,7 +212,7 @@ class PlanPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no types
         return repr(math.pi)
 
     def _print_atan(self, expr: sp.atan) -> str:
-        return f"arctan({self._print(expr.args[0])})"
+        return f"np.arctan({self._print(expr.args[0])})"
 
 
 def print_line(value: sp.Expr) -> str:

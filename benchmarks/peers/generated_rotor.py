@@ -12,6 +12,11 @@ from proprotor.rotor.generated import evaluate
 
 Matrices = tuple[NDArray, NDArray, NDArray]  # M, C, K
 
+NO_LINKAGES = {
+    "kinematic_pitch_flap_coupling": 0.0,
+    "kinematic_pitch_lag_coupling": 0.0,
+}  # as the other methods
+
 # What is called for M, C and K, in this order; also what size and operations are counted over.
 BLADE_FUNCTIONS: tuple[Callable, ...] = (
     inertia.dependent_inertias,
@@ -30,7 +35,7 @@ ROTOR_FUNCTIONS: tuple[Callable, ...] = (multiblade.mass, multiblade.damping, mu
 
 def blade_matrices(quantities: Mapping[str, Any]) -> Matrices:
     """M, C, K (..., 12, 12) of one blade in rotating axes."""
-    pool = dict(quantities)
+    pool = NO_LINKAGES | dict(quantities)
     for values in BLADE_FUNCTIONS[:3]:
         pool |= evaluate(values, pool)._asdict()
     mass = evaluate(inertia.mass, pool) + evaluate(pitch.mass, pool)

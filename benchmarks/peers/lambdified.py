@@ -13,7 +13,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive import equations, multiblade
+from derive import equations, multiblade, symbols
 from derive import kinematics as kin
 
 BLADE_MODULES = ("inertia", "flap_lag_springs", "pitch")
@@ -49,9 +49,9 @@ class Lambdified:
             if matrix[i, j] != 0
         ]
         entries = [matrices[k][i, j] for k, i, j in self.places]
-        symbols = sorted(set().union(*(entry.free_symbols for entry in entries)), key=lambda s: s.name)
-        self.names = [symbol.name for symbol in symbols]
-        self.function: Callable = sp.lambdify(symbols, entries, modules="numpy", cse=cse)
+        given = sorted(set().union(*(entry.free_symbols for entry in entries)), key=lambda s: s.name)
+        self.names = [symbol.name for symbol in given]
+        self.function: Callable = sp.lambdify(given, entries, modules="numpy", cse=cse)
 
     def __call__(self, quantities: Mapping[str, Any]) -> tuple[NDArray, NDArray, NDArray]:
         """M, C, K (..., n, n)."""
@@ -65,14 +65,14 @@ class Lambdified:
 
 
 def blade_expressions() -> dict[str, sp.Matrix]:
-    """Mass, damping and stiffness of one blade in the blade's own numbers, no temporaries left."""
+    """Mass, damping and stiffness of one blade in the blade's own numbers, no temporaries and no linkages left."""
     functions = {(m, f.name): f for m in BLADE_MODULES for f in equations.consistent_functions(m)}
     steps = [
         *functions["inertia", "dependent_inertias"].steps,
         *functions["inertia", "trim_integrals"].steps,
         *functions["flap_lag_springs", "effective_stiffness"].steps,
     ]
-    resolved: dict[sp.Symbol, sp.Expr] = {}
+    resolved: dict[sp.Symbol, sp.Expr] = dict.fromkeys(symbols.HINGE_LINKAGES, sp.Integer(0))
     for symbol, value in steps:
         resolved[symbol] = sp.sympify(value).xreplace(resolved)
     return {

@@ -55,8 +55,6 @@ def random_rotors(count: int, seed: int = 0) -> Quantities:
         q[f"{name}_centre"] = rng.uniform(0.4, 0.6, count) * length
         q[f"{name}_inertia"] = rng.uniform(0.05, 0.1, count) * q[f"{name}_mass"] * length**2
     q |= {"n_blades": np.full(count, 3.0), "propeller_moment": np.ones(count)}
-    none = ("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling")  # the other methods have none
-    q |= {name: np.zeros(count) for name in none}
     q["pitch"] = q["collective"] + q["elastic_pitch"]
     q["structural_pitch"] = q["pitch"] + q["structural_pitch_offset"]
     return q | mass_integrals(q)

@@ -268,7 +268,7 @@ What the figures do not show:
   M, C and K, and writes each entry once: {cse_operations} operations against {rotor_operations}. The generated
   functions fill seven arrays of a blade, add them, and fill three of the rotor, entry by entry, so that each
   matrix can be read, tested and replaced by itself, with a name and an equation number beside every entry.
-- The model takes the fused functions beside the readable ones, `proprotor_equations.fused`: 347 operations from the
+- The model takes the fused functions beside the readable ones, `proprotor_equations.fused`: 342 operations from the
   springs to M, C, K and B. `python -m benchmarks.fused`, interleaved rounds of one run, gives their time in that of
   `lambdify(cse=True)`: 0.51 at 1, 1.00 at 100, 0.61 at 10,000 (numpy 2.4.6, OpenBLAS 0.3.31 Haswell). So `lambdify` is
   as fast as the fused functions at 100, where calls of NumPy and the filling of the matrices are the cost of both.

@@ -5,11 +5,13 @@ that rotation adds to C and K, many cancel.
 """
 
 import dataclasses
+import inspect
 
 import numpy as np
 import pytest
 from proprotor_equations import flap_lag_springs
 from proprotor_equations import rotor as readable
+from proprotor_equations.fused import general, plain
 
 import proprotor as pp
 from proprotor.rotor import fused
@@ -46,18 +48,37 @@ def assert_alike(found, expected, rotor_speed):
         assert (np.abs(found[name] - expected[name]) <= ROUNDING * size[name]).all(), name
 
 
+def at(blade, rows):
+    """Quantities of some rotors, (rows,); of a single place as plain numbers."""
+    return {
+        name: value if isinstance(value, float) else value[rows] if np.ndim(rows) else float(value[rows])
+        for name, value in blade.items()
+    }
+
+
 def one_of(blade, segments, place):
     """One rotor as plain numbers, its segments as arrays (3,)."""
-    numbers = {name: float(value[place]) for name, value in blade.items()}
+    numbers = at(blade, place)
     if segments is None:
         return numbers, None
     return numbers, {name: value[place] if value.ndim > 1 else value for name, value in segments.items()}
 
 
+def without_what_is_rare(blade):
+    """The same rotors without linkages and drive train: plain numbers, zero."""
+    return blade | dict.fromkeys(plain.ABSENT, 0.0)
+
+
 @pytest.fixture(params=["in air", "in vacuum"])
-def rotors(request):
+def general_rotors(request):
     blade, segments = random_rotors(300)
     return blade, segments if request.param == "in air" else None
+
+
+@pytest.fixture(params=["general", "plain"])
+def rotors(request, general_rotors):
+    blade, segments = general_rotors
+    return (without_what_is_rare(blade) if request.param == "plain" else blade), segments
 
 
 def test_fused_is_readable(rotors):
@@ -78,6 +99,27 @@ def test_one_point_has_the_bits_of_a_batch(rotors):
         one = fused.rotor_matrices(*one_of(*rotors, place), 1, one=True)
         for name in MATRICES:
             assert np.array_equal(one[name][0], whole[name][place])
+
+
+def test_a_rotor_without_linkages_takes_the_plans_without_them(general_rotors):
+    """Where all of them are the plain number zero; an array goes with the plans for all rotors, and agrees."""
+    blade, segments = general_rotors
+    rare = without_what_is_rare(blade)
+    assert fused.plans_of(rare) is fused.plans_of({}) is plain
+    zeros = rare | dict.fromkeys(plain.ABSENT, np.zeros(300))
+    for name in plain.ABSENT:
+        for value in (np.zeros(300), np.zeros(()), 0.1, 0j, 1e-30j):
+            assert fused.plans_of(rare | {name: value}) is general
+    matrices = (fused.rotor_matrices(one, segments, 300) for one in (rare, zeros))
+    assert_alike(*matrices, blade["rotor_speed"])
+
+
+def test_what_is_absent_is_in_no_plan_for_plain_rotors():
+    functions = [f for f in vars(plain).values() if inspect.isfunction(f)]
+    taken = [
+        {name for f in functions for name in keywords(getattr(of, f.__name__))} for of in (plain, general)
+    ]
+    assert len(functions) > 5 and not taken[0] & {*plain.ABSENT} and taken[1] >= {*plain.ABSENT}
 
 
 def test_springs_are_readable():
@@ -103,12 +145,12 @@ def test_a_rotor_has_the_same_bits_in_every_batch(rotors, monkeypatch):
     parted = fused.rotor_matrices(blade, segments, 300)
     rows = np.array([5, 211, 17])
     some = fused.rotor_matrices(
-        {name: value[rows] for name, value in blade.items()},
+        at(blade, rows),
         segments and {k: v[rows] if v.ndim > 1 else v for k, v in segments.items()},
         3,
     )
     alone = fused.rotor_matrices(
-        {name: value[211:212] for name, value in blade.items()},
+        at(blade, np.array([211])),
         segments and {k: v[211:212] if v.ndim > 1 else v for k, v in segments.items()},
         1,
     )
@@ -128,7 +170,10 @@ def test_numbers_that_all_points_share(rotors):
         assert np.array_equal(mixed[name], full[name])
 
 
-@pytest.mark.parametrize("name", ["precone", "lag", "rotor_speed", "pitch_gimbal_coupling", "fn_up_1"])
+@pytest.mark.parametrize(
+    "name",
+    ["precone", "lag", "rotor_speed", "pitch_gimbal_coupling", "fn_up_1", "kinematic_pitch_flap_coupling"],
+)
 def test_a_complex_step_goes_through_both_renderings(rotors, name):
     blade, segments = rotors
     if segments is None and name.startswith("fn"):
@@ -140,7 +185,10 @@ def test_a_complex_step_goes_through_both_renderings(rotors, name):
     found = fused.rotor_matrices(*moved, 300)
     speed = blade["rotor_speed"] + 1.0
     assert_alike({k: v.real + v.imag / 1e-30 for k, v in found.items()}, slopes, speed)
-    one = {k: complex(v[4]) for k, v in moved[0].items()}
+    one = {
+        k: v if isinstance(v, float) else complex(np.ravel(v)[4 * (np.size(v) > 1)])
+        for k, v in moved[0].items()
+    }
     along = moved[1] and {k: v[4] if v.ndim > 1 else v for k, v in moved[1].items()}
     found = fused.rotor_matrices(one, along, 1, one=True)
     found = {k: v.real + v.imag / 1e-30 for k, v in found.items()}

@@ -168,8 +168,7 @@ def test_the_quick_bound_of_one_point_is_a_bound(size):
     for spread in np.geomspace(0.003, 3.0, 100):
         first, last = (np.eye(size) + spread * RNG.standard_normal((size, size)) for _ in range(2))
         parts = [spread * RNG.standard_normal((size, size)) for _ in range(2)]
-        ends = (trim_balance.Slopes(a[None], b[None]) for a, b in zip((first, last), parts, strict=True))
-        verdicts.append(trim_bound.leads_to_end(*ends))
+        verdicts.append(trim_bound.leads_to_end(np.array([(first, parts[0]), (last, parts[1])])))
         if not verdicts[-1]:
             continue
         mean, of_air = (first + last) / 2, (parts[0] + parts[1]) / 2

@@ -7,10 +7,11 @@ import pytest
 
 import proprotor as pp
 from proprotor.errors import InputError
-from proprotor.model.batches import at_rows, few_at_once, joint_shape
-from proprotor.model.first_order import state_matrix
+from proprotor.model.batches import as_grid, at_rows, few_at_once, joint_shape
+from proprotor.model.first_order import in_one_axis, state_matrix
 from proprotor.model.massless import massless
 from proprotor.model.mount import mount
+from proprotor.stability.modes import decomposition, eigenvalues, few_spectra
 
 SPEEDS = np.linspace(40.0, 190.0, 600)  # more points than are taken at once
 SOME = [0, 255, 256, 257, 511, 512, 599]
@@ -106,3 +107,38 @@ def test_a_rotor_without_what_its_options_need_is_refused_each_time(case):
                 replace(case.rotor, control_stiffness=0.0), case.operation, 100.0, pitch="coupling"
             )
     assert pp.rotor_model(rotor, case.operation, 100.0, pitch="rigid").trim.converged.all()
+
+
+def test_designs_at_all_airspeeds_are_a_grid():
+    speeds, precone, mass = np.array([50.0, 60.0, 70.0]), np.array([0.02, 0.03]), np.array([1.0, 1.0])
+    numbers, along = as_grid({"a": precone.repeat(3), "b": mass.repeat(3)}, np.tile(speeds, 2))
+    assert np.array_equal(numbers["a"], precone[:, None]) and np.array_equal(numbers["b"], mass[:, None])
+    assert np.array_equal(along, [speeds, speeds])
+    numbers, along = as_grid({"b": mass.repeat(3)}, np.tile(speeds, 2))  # one design
+    assert numbers["b"].shape == (1, 1) and along.shape == (1, 6)
+
+
+@pytest.mark.parametrize(
+    "a", [[1, 2, 3, 4, 5, 6], [1, 1, 2, 3, 3, 3], [1, 1, 1, 2, 2, 3], [1, 1, 1, 1, 2, 2], [1, 2, 2, 2, 2, 2]]
+)
+def test_other_points_are_no_grid(a):
+    given, speeds = np.array(a, dtype=float), np.arange(6.0)
+    numbers, along = as_grid({"a": given}, speeds)
+    assert numbers["a"] is given and along is speeds
+
+
+def test_a_grid_in_one_axis_has_the_bits_of_its_points(case):
+    precone, speeds = np.array([0.03, 0.04]), np.array([90.0, 120.0, 150.0])
+    grid = in_one_axis(case.vary({"rotor.precone": precone[:, None]}).linearize(np.tile(speeds, (2, 1))))
+    points = case.vary({"rotor.precone": precone.repeat(3)}).linearize(np.tile(speeds, 2))
+    for name in "MCK":
+        assert np.array_equal(getattr(grid, name), getattr(points, name))
+    assert np.array_equal(grid.airspeed, points.airspeed)
+    assert np.array_equal(grid.trim.reason, points.trim.reason)
+
+
+def test_eigenvalues_a_few_points_at_a_time_are_those_of_all_state_matrices(model):
+    of_all = np.linalg.eigvals(state_matrix(model))
+    assert np.array_equal(eigenvalues(model), of_all)
+    whole = decomposition(model).values
+    assert np.array_equal(np.concatenate([spectrum.values for _, spectrum in few_spectra(model)]), whole)

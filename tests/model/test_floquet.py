@@ -130,6 +130,21 @@ def test_a_point_without_airspeed_has_its_reason():
     assert model.trim.reason[1] == ""
 
 
+def test_a_tip_that_advances_beyond_mach_1_has_its_reason():
+    model = CASE.linearize([150.0, 250.0], shaft_angle=np.radians(15))
+    assert model.trim.reason[0] == ""
+    assert "where the blade advances" in str(model.trim.reason[1])
+    assert np.isnan(model.M[1]).all()
+    assert CASE.linearize(250.0).trim.reason == ""
+
+
+def test_a_gimbal_that_nothing_levels_has_its_reason():
+    """In a vacuum no cyclic pitch tilts a gimbal."""
+    operation = pp.Operation(rotor_speed=48.0, density=0.0, speed_of_sound=340.0, trim={"collective": 0.3})
+    model = pp.rotor_model(CASE.rotor, operation, 100.0, load_factor=2.0, cyclic="level", pitch="rigid")
+    assert "no periodic trim found" in str(model.trim.reason)
+
+
 def test_a_free_aircraft_is_refused():
     with pytest.raises(InputError, match="stands still"):
         pp.load_case("xv15-aircraft").linearize(150.0, shaft_angle=0.05)

@@ -5,17 +5,18 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations.fused import trim as plans
+from proprotor_equations.fused import general, plain
 
-from proprotor.rotor.fused_balance import MOMENTS
+from proprotor.rotor.fused_balance import moments_of
 from tests.mutation import one_blade, paper_blade
 from tests.mutation.comparison import Check, call, matrix_check, values_check
 from tests.mutation.inputs import Quantities, blade_quantities, natural_sizes, points, stacked
 from tests.mutation.one_blade import Point
-from tests.mutation.sections import POLYNOMIAL, section_derivatives
+from tests.mutation.sections import StraightAirfoil, section_derivatives
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import blades, clock, inertia_rows
 
@@ -33,7 +34,8 @@ def checks() -> Iterator[Check]:
     yield from _balance()
     yield from _trim()
     yield _line_by_plan()
-    yield from _balance_by_plan()
+    yield from _balance_by_plan(general)
+    yield from _balance_by_plan(plain)
 
 
 def _flown(published: bool) -> list[Point]:
@@ -92,18 +94,19 @@ def moments(point: Point) -> dict[str, NDArray]:
     """Radial moments of the section loads in trim, (segments,), by the names of the derivation."""
     r, weight, segment = one_blade.stations(point)
     inside = (segment == np.arange(3)[:, None]) * weight
-    loads = section_derivatives(POLYNOMIAL, one_blade.trim_air(point))
+    loads = section_derivatives(point.airfoil, one_blade.trim_air(point))
     return {
         f"{name}_{power}": inside @ (r**power * load) for name, load in loads.items() for power in range(3)
     }
 
 
 @functools.cache
-def _quantities(published: bool) -> Quantities:
+def _quantities(published: bool, plain: bool = False) -> Quantities:
     """Of the segments, (points, segments)."""
-    whole = {name: value[:, None] for name, value in blade_quantities().items()}
+    whole = {name: np.asarray(value)[..., None] for name, value in blade_quantities(plain).items()}
     whole |= {"beyond_flap_hinge": BEYOND_FLAP[None], "beyond_lag_hinge": BEYOND_LAG[None]}
-    return whole | stacked(_geometry(p) | moments(p) for p in _flown(published))
+    flown = points(plain) if plain else _flown(published)
+    return whole | stacked(_geometry(p) | moments(p) for p in flown)
 
 
 def _module(published: bool) -> str:
@@ -236,15 +239,15 @@ def _line_by_plan() -> Check:
     rows = ("ut_0", "up_0", "ur_0", "ut_1", "up_1", "ur_1", "spin")
     velocity = np.moveaxis(np.array([_velocity(p) for p in points()]), -1, 0)
     known = geometry | dict(zip(rows, velocity, strict=True))
-    expected = {name: known[name] for name in plans.LINE}
+    expected = {name: known[name] for name in plain.LINE}
     speed = quantities["airspeed"] + quantities["rotor_speed"]
     size = {name: speed if name in rows else 1.0 for name in expected}
 
     def actual() -> dict[str, NDArray]:
-        found = call(("fused.trim", "line"), quantities, np.cos, np.sin)
-        return dict(zip(plans.LINE, found, strict=True))
+        found = call(("fused.plain", "line"), quantities, np.cos, np.sin)
+        return dict(zip(plain.LINE, found, strict=True))
 
-    return Check(("fused.trim", "line"), "positions of the nonlinear rotor", actual, expected, size)
+    return Check(("fused.plain", "line"), "positions of the nonlinear rotor", actual, expected, size)
 
 
 def _filled(layouts: dict[str, list[list[int]]], results: tuple[NDArray, ...]) -> dict[str, NDArray]:
@@ -260,25 +263,45 @@ def _filled(layouts: dict[str, list[list[int]]], results: tuple[NDArray, ...]) -
     }
 
 
-def _balance_by_plan() -> Iterator[Check]:
+def _balance_by_plan(plans: ModuleType) -> Iterator[Check]:
     """Balance without airloads, work of the airloads, and the change of both with the unknowns."""
-    quantities, along = blade_quantities(), _quantities(published=False)
-    line, loads = ([along.get(name, np.nan) for name in names] for names in (plans.LINE, MOMENTS))
+    is_plain = plans is plain
+    module, flown = f"fused.{'plain' if is_plain else 'general'}", points(is_plain)
+    quantities, along = blade_quantities(is_plain), _quantities(published=False, plain=is_plain)
+    # Pitch that follows flap and lag belongs to the perturbation, not to the trim.
+    still = [
+        replace(p, pitch_flap_coupling=0.0, pitch_lag_coupling=0.0, airfoil=StraightAirfoil()) for p in flown
+    ]
+    along = along | stacked(map(moments, still))
+    line, loads = ([along.get(name, np.nan) for name in names] for names in (plans.LINE, moments_of(plans)))
 
     def balance() -> dict[str, NDArray]:
-        return _filled(plans.BALANCE, call(("fused.trim", "balance"), quantities, np.cos, np.sin))
+        return _filled(plans.BALANCE, call((module, "balance"), quantities, np.cos, np.sin))
 
     def work() -> dict[str, NDArray]:
-        found = call(("fused.trim", "work"), along, line, loads)
+        found = call((module, "work"), along, line, loads)
         return _filled(plans.WORK, tuple(np.sum(part, axis=-1) for part in found))
 
-    still = [replace(p, pitch_flap_coupling=0.0, pitch_lag_coupling=0.0) for p in points()]
     in_air = [one_blade.steady_rows(functools.partial(one_blade.airload_rows, p), p) for p in still]
-    in_vacuum = [one_blade.steady_rows(one_blade.vacuum_rows, p) for p in points()]
+    in_vacuum = [one_blade.steady_rows(one_blade.vacuum_rows, p) for p in flown]
     for name, pairs, actual in (("balance", in_vacuum, balance), ("work", in_air, work)):
         rows, slopes = map(np.array, zip(*pairs, strict=True))
         named = ("residual", "slopes") if name == "balance" else ("work", "work_slopes")
         numbers = (rows, slopes) if name == "balance" else (-rows, slopes[..., :3])
         expected = dict(zip(named, (numbers[0][..., None], numbers[1]), strict=True))
-        told = "steady balance of the nonlinear rotor"
-        yield Check(("fused.trim", name), told, actual, expected, dict.fromkeys(named, _moment_size()))
+        told = "steady balance of the nonlinear rotor" + ", without linkages" * is_plain
+        yield Check((module, name), told, actual, expected, dict.fromkeys(named, _moment_size()))
+    if is_plain:
+        yield _precone_by_plan()
+
+
+def _precone_by_plan() -> Check:
+    loads = np.array([_undeflected_inertia(p) for p in points()])[..., None]
+
+    def actual() -> dict[str, NDArray]:
+        found = call(("fused.plain", "precone_load"), blade_quantities(), np.cos, np.sin)
+        return _filled(plain.PRECONE_LOAD, found)
+
+    told = "steady inertia forces on the undeflected blade of the nonlinear rotor"
+    size = {"precone_load": _moment_size()}
+    return Check(("fused.plain", "precone_load"), told, actual, {"precone_load": loads}, size)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES
 
-from proprotor.rotor.fused import OF_SEGMENTS, rotor_matrices
+from proprotor.rotor.fused import of_segments, plans_of, rotor_matrices
 from tests.mutation import one_blade
 from tests.mutation.airload_checks import BEYOND_FLAP, BEYOND_LAG, moments
 from tests.mutation.comparison import Check, matrix_check, values_check
@@ -42,17 +42,21 @@ def checks() -> Iterator[Check]:
     yield values_check(("rotor", "matrices"), told, _quantities(), expected, natural)
     told = "the sum over the blades"
     yield values_check(("rotor", "fixed_frame"), told, _quantities(), expected, natural, *blade.values())
-    yield from _fused(expected, natural)
+    yield from _fused("general", ("segment", "in_vacuum"))
+    yield from _fused("plain", ("segment", "of_airloads", "in_vacuum"))
 
 
-def _fused(expected: Quantities, natural: Quantities) -> Iterator[Check]:
+def _fused(kind: str, functions: tuple[str, ...]) -> Iterator[Check]:
     """Checks of the plans of a whole rotor: the same rotors in the air, and without airloads."""
-    segments = {name: value for name, value in _quantities().items() if name in OF_SEGMENTS}
-    told = "the sum over blades of the nonlinear rotor"
-    for name, given in (("segment", segments), ("of_airloads", segments), ("in_vacuum", None)):
-        here, size = (expected, natural) if given else _rotor(_blade(with_air=False), _sizes())
-        actual = functools.partial(rotor_matrices, _quantities(), given, len(points()))
-        yield Check(("fused.rotor", name), told, actual, here, size)
+    plain = kind == "plain"
+    quantities, in_air = _quantities(plain), _rotor(_blade(plain=plain), _sizes(), plain)
+    segments = {name: quantities[name] for name in of_segments(plans_of(quantities))}
+    in_vacuum = _rotor(_blade(with_air=False, plain=plain), _sizes(), plain)
+    told = "the sum over blades of the nonlinear rotor" + ", without linkages" * plain
+    for name in functions:
+        given, (here, size) = (None, in_vacuum) if name == "in_vacuum" else (segments, in_air)
+        actual = functools.partial(rotor_matrices, quantities, given, len(points()))
+        yield Check((f"fused.{kind}", name), told, actual, here, size)
 
 
 def _transform() -> Check:
@@ -66,7 +70,7 @@ def _swashplate() -> Iterator[Check]:
     given = {name: blade_quantities()[name] for name in ("control_stiffness", "pitch_damping", "rotor_speed")}
     given["n_blades"] = _n_blades()
     given["cyclic_control_stiffness_excess"] = _ADDED["cyclic_control_stiffness_excess"]
-    expected = np.array([_pulled(place) for place in range(len(points()))])
+    expected = np.array([_pulled(place, _ADDED) for place in range(len(points()))])
     size = (given["n_blades"] * given["control_stiffness"])[:, None, None]
     told = "springs and dampers between blades and swashplate"
     yield matrix_check(("multiblade", "swashplate_loads"), told, given, expected, size)
@@ -76,7 +80,7 @@ def _n_blades() -> NDArray:
     return np.array([point.n_blades for point in points()])
 
 
-def _pulled(place: int) -> NDArray:
+def _pulled(place: int, added: dict[str, float]) -> NDArray:
     """Loads (18, 3) on a rotor: each blade's pitch is pulled towards a + b cos ψ + c sin ψ by spring and damper.
 
     Where the swashplate tilts, b and c, the spring has another stiffness.
@@ -90,29 +94,30 @@ def _pulled(place: int) -> NDArray:
         own = seen_from_blade(FIXED_COORDINATES, azimuth)[0][BLADE_COORDINATES.index("pitch")]
         asked = np.array([1.0, np.cos(azimuth), np.sin(azimuth)])
         rate = omega * np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
-        springs = spring + _ADDED["cyclic_control_stiffness_excess"] * np.array([0.0, 1.0, 1.0])
+        springs = spring + added["cyclic_control_stiffness_excess"] * np.array([0.0, 1.0, 1.0])
         loads += np.outer(own, springs * asked + damper * rate)
     return loads
 
 
 @functools.cache
-def _quantities() -> Quantities:
+def _quantities(plain: bool = False) -> Quantities:
     """Of the blades (points,) and of their segments (points, segments)."""
     segments = {"beyond_flap_hinge": BEYOND_FLAP, "beyond_lag_hinge": BEYOND_LAG}
-    segments |= stacked(map(moments, points()))
-    return blade_quantities() | segments | _ADDED | {"n_blades": _n_blades()}
+    segments |= stacked(map(moments, points(plain)))
+    added = {} if plain else _ADDED
+    return blade_quantities(plain) | segments | added | {"n_blades": _n_blades()}
 
 
-def _blade(with_structure: bool = True, with_air: bool = True) -> dict[str, NDArray]:
+def _blade(with_structure: bool = True, with_air: bool = True, plain: bool = False) -> dict[str, NDArray]:
     """Mass, damping, stiffness (points, 12, 12), gust loads (points, 12, 3) of one blade, or of a part alone."""
     parts = [one_blade.air_matrices] * with_air
     if with_structure:
         parts += [one_blade.mass_matrices, one_blade.spring_matrices, one_blade.pitch_matrices]
-    sums = [np.sum([part(point) for part in parts], axis=0) for point in points()]
+    sums = [np.sum([part(point) for part in parts], axis=0) for point in points(plain)]
     found = dict(zip(_NAMES, np.moveaxis(np.array(sums), 1, 0), strict=True))
     if not with_structure:
         del found["mass"]
-    return found | {"gusts": with_air * np.array([one_blade.gust_columns(point) for point in points()])}
+    return found | {"gusts": with_air * np.array([one_blade.gust_columns(point) for point in points(plain)])}
 
 
 def _sizes() -> dict[str, NDArray]:
@@ -121,31 +126,34 @@ def _sizes() -> dict[str, NDArray]:
     return found | {"gusts": found["damping"][..., :3]}
 
 
-def _rotor(blade: dict[str, NDArray], size: dict[str, NDArray]) -> tuple[dict[str, Any], dict[str, Any]]:
+def _rotor(
+    blade: dict[str, NDArray], size: dict[str, NDArray], plain: bool = False
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """M, C, K, B of the rotors with engine, shaft and cyclic restraint, and the sizes of what is summed."""
     found: dict[str, list[NDArray]] = {name: [] for name in "MCKB"}
     sizes: dict[str, list[NDArray]] = {name: [] for name in "MCKB"}
+    added = dict.fromkeys(_ADDED, 0.0) if plain else _ADDED
     for place, point in enumerate(points()):
         of_blade, of_size = ([part[name][place] for name in _NAMES] for part in (blade, size))
         given = (FIXED_COORDINATES, point.n_blades, blade_quantities()["rotor_speed"][place], _SHAFT)
         sums, _ = summed_over_blades(tuple(of_blade), *given)
         _, natural = summed_over_blades(tuple(of_size), *given)
         gusts = gusts_over_blades(blade["gusts"][place], FIXED_COORDINATES, point.n_blades, _SHAFT)
-        matrices = [a + b for a, b in zip(sums, _other(point.n_blades), strict=True)]
-        for name, matrix in zip("MCKB", [*matrices, np.hstack([_pulled(place), gusts])], strict=True):
+        matrices = [a + b for a, b in zip(sums, _other(point.n_blades, added), strict=True)]
+        for name, matrix in zip("MCKB", [*matrices, np.hstack([_pulled(place, added), gusts])], strict=True):
             found[name].append(matrix)
         for name, matrix in zip("MCKB", [*natural, natural[2][:, :6] + natural[1][:, :6]], strict=True):
             sizes[name].append(matrix)
     return {k: np.array(v) for k, v in found.items()}, {k: np.array(v) for k, v in sizes.items()}
 
 
-def _other(n_blades: int) -> list[NDArray]:
+def _other(n_blades: int, added: dict[str, float]) -> list[NDArray]:
     """M, C, K of engine and shaft, and of springs that collective motion does not feel."""
     azimuth, turn = (np.array(FIXED_COORDINATES) == name for name in ("azimuth", "alpha_z"))
-    mass = _ADDED["drive_inertia"] * np.outer(azimuth | turn, azimuth | turn)
-    damping = _ADDED["drive_damping"] * np.outer(azimuth, azimuth)
-    stiffness = _ADDED["shaft_stiffness"] * np.outer(azimuth, azimuth)
+    mass = added["drive_inertia"] * np.outer(azimuth | turn, azimuth | turn)
+    damping = added["drive_damping"] * np.outer(azimuth, azimuth)
+    stiffness = added["shaft_stiffness"] * np.outer(azimuth, azimuth)
     for angle, excess in (("flap", "cyclic_flap"), ("pitch", "cyclic_control")):
         cyclic = np.isin(FIXED_COORDINATES, [f"{angle}_1c", f"{angle}_1s"])
-        stiffness = stiffness + n_blades / 2 * _ADDED[f"{excess}_stiffness_excess"] * np.diag(cyclic)
+        stiffness = stiffness + n_blades / 2 * added[f"{excess}_stiffness_excess"] * np.diag(cyclic)
     return [mass, damping, stiffness]

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from proprotor_equations.fused.plain import ABSENT
 
 from tests.mutation import one_blade
 from tests.mutation.one_blade import Point
@@ -19,9 +21,15 @@ SEEDS = (0, 1, 2)  # rotors of three, four and five blades
 
 
 @functools.cache
-def points() -> tuple[Point, ...]:
-    """Rotors at a steady state."""
-    return tuple(map(Point.random, SEEDS))
+def points(plain: bool = False) -> tuple[Point, ...]:
+    """Rotors at a steady state; plain ones have no linkages and no couplings of the pitch."""
+    found = map(Point.random, SEEDS)
+    if plain:
+        found = (
+            replace(one_blade.without_linkages(p), pitch_flap_coupling=0.0, pitch_lag_coupling=0.0)
+            for p in found
+        )
+    return tuple(found)
 
 
 def stacked(pools: Iterable[Mapping[str, Any]]) -> Quantities:
@@ -31,9 +39,10 @@ def stacked(pools: Iterable[Mapping[str, Any]]) -> Quantities:
 
 
 @functools.cache
-def blade_quantities() -> Quantities:
-    """Of the whole blade, (points,)."""
-    return stacked(one_blade.quantities(p) | trim_integrals(p) | spring_constants(p) for p in points())
+def blade_quantities(plain: bool = False) -> Quantities:
+    """Of the whole blade, (points,); what a plain rotor has not is the plain number zero."""
+    pools = (one_blade.quantities(p) | trim_integrals(p) | spring_constants(p) for p in points(plain))
+    return stacked(pools) | (dict.fromkeys(ABSENT, 0.0) if plain else {})
 
 
 @functools.cache

@@ -80,6 +80,7 @@ class MutatedFunction:
         self._module = generated_modules()[module]
         tree = ast.parse(inspect.getsource(self._module))
         self._function = next(f for f in tree.body if isinstance(f, ast.FunctionDef) and f.name == name)
+        self._function.body = [part for statement in self._function.body for part in _with_copy(statement)]
         self._tree = ast.Module([self._function], [])
 
     def mutants(self) -> Iterator[Mutant]:
@@ -124,6 +125,29 @@ class MutatedFunction:
                 for change in CHANGES:
                     mutant = Mutant(self.module, self.name, statement.lineno, entry, text, change)
                     yield mutant, parent, field
+
+
+_OPERATORS = {"add": ast.Add, "subtract": ast.Sub, "multiply": ast.Mult, "divide": ast.Div}
+
+
+def _with_copy(statement: ast.stmt) -> list[ast.stmt]:
+    """`name = np.add(a, b, into[n])` as `name = a + b` and a copy, whose terms can be changed like all others."""
+    call = getattr(statement, "value", None)
+    if not (isinstance(statement, ast.Assign) and isinstance(call, ast.Call) and len(call.args) > 1):
+        return [statement]
+    *operands, into = call.args
+    if not isinstance(into, ast.Subscript):
+        return [statement]
+    operation = call.func.attr
+    value = (
+        ast.UnaryOp(ast.USub(), *operands)
+        if operation == "negative"
+        else ast.BinOp(operands[0], _OPERATORS[operation](), operands[1])
+    )
+    name = statement.targets[0].id
+    made = ast.Assign(statement.targets, value)
+    copy = ast.Assign([ast.Subscript(into.value, into.slice, ast.Store())], ast.Name(name, ast.Load()))
+    return [ast.copy_location(part, statement) for part in (made, copy)]
 
 
 def _entry(statement: ast.stmt) -> str | None:

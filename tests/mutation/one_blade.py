@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.mutation.sections import POLYNOMIAL, Air, section_loads
+from tests.mutation.sections import POLYNOMIAL, Air, PolynomialAirfoil, StraightAirfoil, section_loads
 from tests.mutation.transform import ONE_BLADE, in_rotating_axes, seen_from_blade
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import (
@@ -54,6 +54,7 @@ class Point:
     n_blades: int
     pitch_flap_coupling: float
     pitch_lag_coupling: float
+    airfoil: PolynomialAirfoil | StraightAirfoil = POLYNOMIAL
 
     @classmethod
     def random(cls, seed: int) -> Point:
@@ -224,7 +225,7 @@ def airload_rows(point: Point, rotor: NonlinearRotor, q: Motion, time: float, dr
     """What the airloads add to the left-hand side."""
     r, weight, _ = stations(point)
     motion = blades(rotor, r, q, clock(rotor, time))
-    loads = section_loads(POLYNOMIAL, air_at(point, r, motion, drift))
+    loads = section_loads(point.airfoil, air_at(point, r, motion, drift))
     force = loads["fx"][..., None] * motion.chordwise.value
     force = (
         force + loads["fn"][..., None] * motion.normal.value + loads["fd"][..., None] * motion.spanwise.value

@@ -4,8 +4,7 @@ In come a rotor, its operation and its support (`rotor`, `support`); out go line
 configuration, and the stamp that every result has.
 
     linear_model         the record LinearModel: M q̈ + C q̇ + K q = B u about a trim, over a batch of points
-    kept                 results that are kept as long as the objects live from which they were made
-    batches              shapes of batches, and their points a few at a time
+    batches              shapes of batches, their points a few at a time, designs at many airspeeds, memory kept
     quantities           the numbers of rotor, operation and options by the names of the derivation
     lift_lag             the lag of lift, added to the matrices of a rotor
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
@@ -62,6 +61,7 @@ __all__ = [
     "airload_moments",
     "amount_rules",
     "amounts",
+    "batches",
     "blade_comparison",
     "deck_fingerprint",
     "doubts",

@@ -9,14 +9,14 @@ other.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.batches import at_rows, few_at_once
+from proprotor.model.batches import Rows, at_rows, few_at_once
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import massless_coordinates
 from proprotor.typing import Array
@@ -54,17 +54,34 @@ def state_matrix(model: LinearModel) -> Array:
 
 def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
-    held, shape = held_coordinates(model), model.M.shape[:-2]
-    rates = _rates(tuple(held), len(model.dofs))
-    matrix = np.empty((*shape, rates.shape[1], rates.shape[1]))
+    states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
+    matrix = np.empty((*shape, states, states))
     for rows in few_at_once(shape):
-        mass, damping, stiffness = (at_rows(part, rows, shape) for part in (model.M, model.C, model.K))
-        loads = np.concatenate([stiffness.take(held, -1), damping], axis=-1)
-        matrix[rows][..., : len(held), :] = rates
-        np.negative(np.linalg.solve(mass, loads), out=matrix[rows][..., len(held) :, :])
+        first_order_at(model, rows, matrix[rows])
     for state, free in lacking_states(model):
         matrix[free, state, :] = np.nan
         matrix[free, :, state] = np.nan
+    return matrix
+
+
+def first_order_at(model: LinearModel, rows: Rows, out: Array | None = None) -> Array:
+    """Return A of some rows of a batch, all of whose points have the same states, and a mass matrix with an inverse.
+
+    Parameters
+    ----------
+    model : LinearModel
+    rows : slice or ...
+        Of the first axis of the batch.
+    out : array (rows, ..., states, states), optional
+        Where the matrices are put.
+    """
+    held, shape = held_coordinates(model), model.M.shape[:-2]
+    rates = _rates(tuple(held), len(model.dofs))
+    mass, damping, stiffness = (at_rows(part, rows, shape) for part in (model.M, model.C, model.K))
+    loads = np.concatenate([stiffness.take(held, -1), damping], axis=-1)
+    matrix = np.empty((*loads.shape[:-2], *rates.shape[1:] * 2)) if out is None else out
+    matrix[..., : len(held), :] = rates
+    np.negative(np.linalg.solve(mass, loads), out=matrix[..., len(held) :, :])
     return matrix
 
 
@@ -106,6 +123,29 @@ def some_points(model: LinearModel, points: Any) -> LinearModel:
     shapes = None if model.shapes is None else model.shapes[points]
     none: dict[str, Any] = dict.fromkeys(("B", "hub", "rotor", "left", "left_hub"))
     return replace(model, **parts, **none, shapes=shapes)
+
+
+def in_one_axis(model: LinearModel) -> LinearModel:
+    """Return the model with one axis of points in place of two; it then has M, C, K and the motion of the hub only."""
+    if model.airspeed.ndim != 2:
+        return model
+    n, trim = len(model.dofs), model.trim
+    parts: dict[str, Any] = {name: getattr(model, name).reshape(-1, n, n) for name in "MCK"}
+    shapes = None if model.shapes is None else model.shapes.reshape(-1, *model.shapes.shape[-2:])
+    flat = {one.name: getattr(trim, one.name).reshape(-1) for one in fields(trim)}
+    hub = model.hub
+    if hub is not None and hub.ndim > 2:
+        hub = np.broadcast_to(hub, (*model.M.shape[:-2], *hub.shape[-2:])).reshape(-1, *hub.shape[-2:])
+    none: dict[str, Any] = dict.fromkeys(("B", "rotor", "left", "left_hub"))
+    return replace(
+        model,
+        **parts,
+        **none,
+        hub=hub,
+        shapes=shapes,
+        trim=replace(trim, **flat),
+        airspeed=model.airspeed.reshape(-1),
+    )
 
 
 def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from proprotor_equations import FIXED_COORDINATES, inertia, multiblade, pitch
 
-from proprotor.model.kept import kept
 from proprotor.model.quantities import of_rotor
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import HUB
 from proprotor.rotor.rotor import Rotor
 from proprotor.rotor.trim import UNKNOWNS

@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
-from proprotor.model.kept import kept
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.model.mount import at_points, broadcast, check_hub, failed_where, refused_where, with_warning
 from proprotor.model.rotor_share import without_rotors
+from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import HALVES, HUB, MAST_TWIST, ROTOR_SPEED, check_distinct, half_of, in_half
 from proprotor.rotor.trim import Trim
 from proprotor.support.airframe import Airframe

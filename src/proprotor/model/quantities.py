@@ -10,10 +10,10 @@ import numpy as np
 from proprotor_equations import pitch
 
 from proprotor.model.batches import joint_shape
-from proprotor.model.kept import kept
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.kept import kept
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options
 from proprotor.rotor.rotor import Rotor

@@ -14,7 +14,6 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
-from proprotor.model.kept import kept
 from proprotor.model.lift_lag import with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
@@ -24,6 +23,7 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import (
     MAST_TWIST,
     ROTOR_SPEED,

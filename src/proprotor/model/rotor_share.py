@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError
-from proprotor.model.kept import kept
 from proprotor.model.mass_at_rest import MASS_AT_REST
+from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import HUB
 from proprotor.support.normal_modes import NormalModes
 from proprotor.typing import Array

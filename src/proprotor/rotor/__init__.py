@@ -29,6 +29,7 @@ How a rotor is used:
     options              modelling options
     generated            calls of the generated equations by names of quantities
     fused                matrices of a whole rotor by the fused functions, batches and one point
+    kept                 results that are kept as long as the objects live from which they were made
     motions              coordinates as motions, and the names of their modes
 
 Loads and trim:
@@ -54,7 +55,7 @@ A rotor at an angle to its flight, or in a pull-up:
     periodic_trim        the trim that moves, by harmonic balance
 
 All public names of the modules `around_the_turn`, `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`,
-`from_stations`, `fused`, `generated`, `lift_lag`, `motions`, `moving_blade`, `options`, `periodic_trim` and
+`from_stations`, `fused`, `generated`, `kept`, `lift_lag`, `motions`, `moving_blade`, `options`, `periodic_trim` and
 `section_loads` belong to the face.
 """
 
@@ -98,6 +99,7 @@ __all__ = [
     "fused",
     "generated",
     "hinged_blade",
+    "kept",
     "lift_lag",
     "motions",
     "moving_blade",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
+from typing import Any, ClassVar, NamedTuple, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -57,6 +57,17 @@ class HasPoints(Protocol):
     def take(self, rows: Array | slice, stations: slice) -> SectionModel:
         """Return the model at some of the points, and at some of the stations."""
         ...
+
+
+_WITH_POINTS: dict[type, bool] = {}
+
+
+def has_points(airfoil: SectionModel) -> TypeGuard[HasPoints]:
+    """Return whether a section model is `HasPoints`, asked once for each class: the question makes its real part."""
+    kind = type(airfoil)
+    if kind not in _WITH_POINTS:
+        _WITH_POINTS[kind] = isinstance(airfoil, HasPoints)
+    return _WITH_POINTS[kind]
 
 
 @runtime_checkable

@@ -10,17 +10,17 @@ import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import add, neg
+from types import ModuleType
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from proprotor_equations import trim as equations
-from proprotor_equations.fused import rotor as springs
-from proprotor_equations.fused import trim as plans
 
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import plain_number
-from proprotor.rotor.fused_balance import LOADS, MOMENTS, OF_AIRFOIL, PITCH_TWICE
+from proprotor.rotor.fused_balance import OF_AIRFOIL, PITCH_TWICE, loads_of, moments_of
 from proprotor.rotor.generated import evaluate, keywords
+from proprotor.rotor.kept import kept
 from proprotor.rotor.quadrature import POWERS
 from proprotor.rotor.section_loads import LOAD_MOMENTS, OUTBOARD, BladeSections
 from proprotor.rotor.trim import FLAP_LAG, blade_pitch
@@ -30,16 +30,13 @@ from proprotor.typing import Array
 Numbers = dict[str, Any]
 Rows = list[list[float]]
 _NO_LOADS = dict.fromkeys(LOAD_MOMENTS, 0.0)
-_LINES = plans.LINE.index("ut_0")
-# What the plan `work` takes besides line and moments: of the blade, and moments that a straight lift line has not.
 _SIDES = ("beyond_flap_hinge", "beyond_lag_hinge")
-_IDLE = {name: 0.0 for name in keywords(plans.work) if name in LOAD_MOMENTS}
-_OF_BLADE = tuple(name for name in keywords(plans.work) if name not in (*_IDLE, *_SIDES))
 
 
 class Here(NamedTuple):
     """The balance at a state.
 
+    plans : the fused functions of this rotor.
     residual : of the rows that close the free unknowns.
     full, airloads : slopes of these rows with the free unknowns, as `Slopes`.
     work : results of the plan `work`, as the places of its layouts count them.
@@ -50,28 +47,30 @@ class Here(NamedTuple):
         Results of the plan `section_loads`.
     """
 
+    plans: ModuleType
     residual: list[float]
     full: Rows
     airloads: Rows
-    work: list[float]
+    work: Sequence[float]
     quantities: Numbers
     moments: Array
     loads: Array
 
     def segments(self, sides: Mapping[str, Array]) -> Numbers:
         """Return the sides of the segments and the radial moments of their loads, arrays (segments,) by name."""
-        own = self.moments.reshape(len(LOADS), -1, POWERS).swapaxes(1, 2).reshape(len(MOMENTS), -1)
-        found: Numbers = {**_NO_LOADS, **sides, **dict(zip(MOMENTS, own, strict=True))}
+        names = moments_of(self.plans)
+        own = self.moments.reshape(len(self.moments), -1, POWERS).swapaxes(1, 2).reshape(len(names), -1)
+        found: Numbers = {**_NO_LOADS, **sides, **dict(zip(names, own, strict=True))}
         return found
 
     def virtual_work(self, row: int) -> float:
         """Return the virtual work of the airloads of one blade on a row of the balance."""
-        place: int = plans.WORK["work"][row][0]
+        place: int = self.plans.WORK["work"][row][0]
         return self.work[place]
 
     def virtual_work_after(self, step: Sequence[float], free: Sequence[int], row: int) -> float:
         """Return the virtual work after a step of the free unknowns, which is subtracted from them."""
-        places: list[int] = plans.WORK["work_slopes"][row]
+        places: list[int] = self.plans.WORK["work_slopes"][row]
         slopes = (self.work[places[PITCH_TWICE[place]]] for place in free)
         moved = sum(slope * part for slope, part in zip(slopes, step, strict=True))
         return self.virtual_work(row) + moved
@@ -97,7 +96,7 @@ class _Stations:
     sides: list[Numbers]
 
     @staticmethod
-    @functools.lru_cache(maxsize=8)
+    @kept
     def of(sections: BladeSections) -> _Stations:
         """Return the stations of sections that have no axis of points."""
         quadrature, along = sections.quadrature, sections.along
@@ -119,17 +118,17 @@ class _Stations:
         bent = np.broadcast_to(along.bent, radii.shape)
         return _Stations(radii, segment, twist, bent, airfoil, given, flat, sides)
 
-    def along(self, lines: list[tuple[float, ...]], quantities: Numbers, sound: float) -> tuple[Array, Array]:
+    def along(
+        self, plans: ModuleType, lines: list[tuple[float, ...]], quantities: Numbers, sound: float
+    ) -> tuple[Array, Array]:
         """Return the loads (results, stations), and the moments (loads, powers of all segments).
 
         `lines` has the results of the plan `line` for each segment.
         """
-        ends = np.array([line[_LINES:] for line in lines]).T.take(self.segment, axis=1)
+        ends = np.array([line[plans.LINE.index("ut_0") :] for line in lines]).T.take(self.segment, axis=1)
         tangential, axial = ends[:2] + ends[3:5] * self.radii
         loads = np.empty((len(plans.SECTION_LOADS), len(self.radii)))
         plans.section_loads(
-            np.sqrt,
-            np.arctan,
             loads,
             **self.given,
             tangential_velocity=tangential,
@@ -141,7 +140,7 @@ class _Stations:
             density=quantities["density"],
             speed_of_sound=sound,
         )
-        return loads, loads[: len(LOADS)].dot(self.weights)
+        return loads, loads[: len(loads_of(plans))].dot(self.weights)
 
     def are_in_doubt(self, loads: Array, radius: float) -> bool:
         """Return whether outboard stations with these results of `section_loads` are beyond the airfoil's range."""
@@ -159,8 +158,8 @@ class _Places(NamedTuple):
     work_slopes: list[list[int]]
 
     @staticmethod
-    @functools.lru_cache(maxsize=32)
-    def of(rows: tuple[int, ...], free: tuple[int, ...]) -> _Places:
+    @functools.cache
+    def of(plans: ModuleType, rows: tuple[int, ...], free: tuple[int, ...]) -> _Places:
         """Return the places of the entries of some rows and columns."""
         residual, slopes = plans.BALANCE["residual"], plans.BALANCE["slopes"]
         work, work_slopes = plans.WORK["work"], plans.WORK["work_slopes"]
@@ -178,9 +177,11 @@ class BalanceOfOne:
 
     rows, free, hinged : as of `Balance`.
     places : of the entries of the rows and columns of the free unknowns.
+    of_work : what the plan `work` takes of the blade and of each segment, by name.
     """
 
     balance: Balance
+    plans: ModuleType
     quantities: Numbers
     stations: _Stations
     load: float
@@ -188,6 +189,7 @@ class BalanceOfOne:
     free: list[int]
     hinged: list[bool]
     places: _Places
+    of_work: list[Numbers]
 
     @classmethod
     def of(cls, balance: Balance) -> BalanceOfOne:
@@ -195,42 +197,49 @@ class BalanceOfOne:
         quantities = {name: plain_number(value) for name, value in balance.quantities.items()}
         stations, load = _Stations.of(balance.sections), plain_number(balance.target.load)
         rows, free, hinged = balance.rows, balance.free, balance.hinged.tolist()
-        return cls(
-            balance, quantities, stations, load, rows, free, hinged, _Places.of(tuple(rows), tuple(free))
-        )
+        places = _Places.of(balance.plans, tuple(rows), tuple(free))
+        of_blade = {name: quantities[name] for name in _of_blade(balance.plans)}
+        of_work = [{**of_blade, **side} for side in stations.sides]
+        return cls(balance, balance.plans, quantities, stations, load, rows, free, hinged, places, of_work)
 
     def precone_load(self) -> list[float]:
         """Return the part of precone in the residual of the undeflected blade."""
-        loads = evaluate(equations.precone_load, self.quantities)[:, equations.TRIM].tolist()
-        return [loads[row] if hinged else 0.0 for row, hinged in zip(self.rows, self.hinged, strict=True)]
+        loads = _signed(evaluate(self.plans.precone_load, self.quantities, math.cos, math.sin))
+        places = [place for place, *_ in self.plans.PRECONE_LOAD["precone_load"]]
+        return [
+            loads[places[row]] if hinged else 0.0 for row, hinged in zip(self.rows, self.hinged, strict=True)
+        ]
 
     def at(self, state: Numbers, precone: float | None = None) -> Here:
         """Return the balance at a state, with a precone of its own if one is given."""
-        here = self.quantities | state
+        here, plans = self.quantities | state, self.plans
         if precone is not None:
             here["precone"] = precone
         here["pitch"] = blade_pitch(here, state)
         here["structural_pitch"] = here["pitch"] + here["structural_pitch_offset"]
         found = evaluate(plans.trim_integrals, here, math.cos, math.sin)
         here.update(zip(plans.TRIM_INTEGRALS, found, strict=True))
-        found = evaluate(springs.effective_stiffness, here, math.cos, math.sin)
-        here.update(zip(springs.EFFECTIVE_STIFFNESS, found, strict=True))
+        found = evaluate(plans.effective_stiffness, here, math.cos, math.sin)
+        here.update(zip(plans.EFFECTIVE_STIFFNESS, found, strict=True))
         if self.balance.options.structure == "diagonal":
             here.update(dict.fromkeys(FLAP_LAG, 0.0))
         structure = evaluate(plans.balance, here, math.cos, math.sin)
         lines = [evaluate(plans.line, here | side, math.cos, math.sin) for side in self.stations.sides]
         sound = here["speed_of_sound"] if self.balance.options.compressibility else math.inf
-        loads, moments = self.stations.along(lines, here, sound)
+        loads, moments = self.stations.along(plans, lines, here, sound)
         residual, full, airloads, work = self._linear(structure, self._work(lines, moments))
-        return Here(residual, full, airloads, work, here, moments, loads)
+        return Here(plans, residual, full, airloads, work, here, moments, loads)
 
     def _work(self, lines: list[tuple[float, ...]], moments: Array) -> Sequence[float]:
         """Return the results of the plan `work`, summed over the segments."""
-        of_blade, parts = {name: self.quantities[name] for name in _OF_BLADE} | _IDLE, []
-        for place, (line, side) in enumerate(zip(lines, self.stations.sides, strict=True)):
-            own = moments[:, POWERS * place : POWERS * (place + 1)].ravel().tolist()
-            parts.append(plans.work(line, own, **of_blade, **side))
-        return parts[0] if len(parts) == 1 else list(map(sum, zip(*parts, strict=True)))
+        own = (
+            moments.reshape(len(moments), len(lines), POWERS).swapaxes(0, 1).reshape(len(lines), -1).tolist()
+        )
+        first, *others = (
+            self.plans.work(line, of_loads, **given)
+            for line, of_loads, given in zip(lines, own, self.of_work, strict=True)
+        )
+        return functools.reduce(_sum, others, first)
 
     def _linear(
         self, structure: Sequence[float], work: Sequence[float]
@@ -250,9 +259,19 @@ class BalanceOfOne:
         return residual, full, airloads, done
 
 
+def _sum(one: Sequence[float], other: Sequence[float]) -> Sequence[float]:
+    return list(map(add, one, other))
+
+
+@functools.cache
+def _of_blade(plans: ModuleType) -> tuple[str, ...]:
+    """Return the quantities of the whole blade that the plan `work` takes."""
+    return tuple(name for name in keywords(plans.work) if name not in _SIDES)
+
+
 def _signed(results: Sequence[float]) -> list[float]:
     """Return results so that a layout's numbers are their places: zero first, the negatives from the end."""
-    return [0.0, *results, *(-result for result in reversed(results))]
+    return [0.0, *results, *map(neg, reversed(results))]
 
 
 def solve(matrix: Rows, right: list[float]) -> list[float] | None:

@@ -6,18 +6,23 @@ Python floats, or as complex numbers for derivatives by a complex step.
 
 A trim has matrices of the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and
 both renderings take the sines of NumPy. Complex numbers agree to rounding.
+
+There are plans for plain rotors, without linkages and drive train, and plans for all rotors. `plans_of` takes those
+for plain rotors where each quantity that a plain rotor has not is the plain number zero. An array goes with the plans
+for all rotors, whatever it holds: so a design has the same bits in every batch that varies the same quantities. The
+bits of a design whose linkage is zero in an array differ by rounding from those of the rotor without a linkage.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
+from types import ModuleType
 from typing import Any
 
 import numpy as np
-from proprotor_equations.fused import rotor as plans
-from proprotor_equations.fused import trim as trim_plans
+from proprotor_equations.fused import plain
 
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keywords
 from proprotor.rotor.section_loads import LOAD_MOMENTS
@@ -25,12 +30,6 @@ from proprotor.typing import Array
 
 _BLOCK = 1024  # points
 _APART = 8  # places in memory
-OF_SEGMENTS = tuple(
-    name
-    for name in ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS)
-    if name in keywords(plans.segment)
-)
-
 Quantities = Mapping[str, Any]
 Matrices = dict[str, Array]
 
@@ -40,8 +39,36 @@ def serves(equations: EquationSet) -> bool:
     return equations == EQUATION_SETS["consistent"]
 
 
+def plans_of(quantities: Quantities) -> ModuleType:
+    """Return the fused functions for a rotor with these quantities: those for plain rotors, or for all."""
+    for name in plain.ABSENT:
+        value = quantities.get(name, 0.0)
+        if not (isinstance(value, float | int) and value == 0):
+            return _general()
+    return _PLAIN
+
+
+_PLAIN: ModuleType = plain
+
+
+def _general() -> ModuleType:
+    """Return the fused functions for all rotors, imported here because few rotors need them."""
+    from proprotor_equations.fused import general
+
+    found: ModuleType = general
+    return found
+
+
+@cache
+def of_segments(plans: ModuleType) -> tuple[str, ...]:
+    """Return the names of the quantities of a segment that the plans take."""
+    known = keywords(plans.segment)
+    return tuple(name for name in ("beyond_flap_hinge", "beyond_lag_hinge", *LOAD_MOMENTS) if name in known)
+
+
 def effective_stiffness(quantities: Quantities) -> dict[str, Any]:
     """Return the springs of hub and blade in series and their derivatives with structural pitch, by name."""
+    plans = plans_of(quantities)
     names = keywords(plans.effective_stiffness)
     numbers = all(isinstance(quantities[name], float) for name in names)
     waves = (_cos, _sin) if numbers else (np.cos, np.sin)
@@ -51,8 +78,9 @@ def effective_stiffness(quantities: Quantities) -> dict[str, Any]:
 
 def trim_integrals(quantities: Quantities) -> dict[str, Any]:
     """Return the mass integrals of the deflected blade and the waves of its angles, by name."""
-    results = evaluate(trim_plans.trim_integrals, quantities, np.cos, np.sin)
-    return dict(zip(trim_plans.TRIM_INTEGRALS, results, strict=True))
+    plans = plans_of(quantities)
+    results = evaluate(plans.trim_integrals, quantities, np.cos, np.sin)
+    return dict(zip(plans.TRIM_INTEGRALS, results, strict=True))
 
 
 def rotor_matrices(
@@ -71,19 +99,20 @@ def rotor_matrices(
     one : bool
         Compute the only point with plain numbers.
     """
-    blade = {name: quantities[name] for name in _names(segments is not None) if name in quantities}
-    along = None if segments is None else {name: segments[name] for name in OF_SEGMENTS}
-    return _one_point(blade, along) if one else _batch(blade, along, points)
+    plans = plans_of(quantities)
+    blade = {name: quantities[name] for name in _names(plans, segments is not None) if name in quantities}
+    along = None if segments is None else {name: segments[name] for name in of_segments(plans)}
+    return _one_point(plans, blade, along) if one else _batch(plans, blade, along, points)
 
 
 @cache
-def _names(in_air: bool) -> tuple[str, ...]:
+def _names(plans: ModuleType, in_air: bool) -> tuple[str, ...]:
     """Return the names of the quantities that the fused functions take."""
     functions = (plans.in_vacuum, plans.of_airloads, plans.segment) if in_air else (plans.in_vacuum,)
     return tuple(dict.fromkeys(name for function in functions for name in keywords(function)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Layout:
     """Where the results of a plan stand in its matrices.
 
@@ -93,6 +122,16 @@ class Layout:
 
     opposite: list[int]
     places: dict[str, Array]
+
+    @cached_property
+    def at_once(self) -> tuple[Array, list[tuple[str, slice, tuple[int, ...]]]]:
+        """The places of all entries, and which of them are those of each matrix, with its shape."""
+        ends = np.cumsum([0, *(places.size for places in self.places.values())]).tolist()
+        parts = [
+            (name, slice(start, end), places.shape)
+            for (name, places), start, end in zip(self.places.items(), ends, ends[1:], strict=False)
+        ]
+        return np.concatenate([places.ravel() for places in self.places.values()]), parts
 
     @classmethod
     def of(cls, table: Mapping[str, Sequence[Sequence[int]]]) -> Layout:
@@ -109,31 +148,29 @@ class Layout:
         return cls(opposite.tolist(), places)
 
 
-_TABLES = {"in_vacuum": plans.IN_VACUUM, "of_airloads": plans.OF_AIRLOADS, "segment": plans.SEGMENT}
-
-
 @cache
-def _layouts() -> dict[str, Layout]:
-    return {name: Layout.of(table) for name, table in _TABLES.items()}
+def _layout(plans: ModuleType, name: str) -> Layout:
+    """Return the layout of the results of a plan."""
+    return Layout.of(getattr(plans, name.upper()))
 
 
 # Batches
 
 
-def _batch(quantities: Quantities, segments: Quantities | None, points: int) -> Matrices:
+def _batch(plans: ModuleType, quantities: Quantities, segments: Quantities | None, points: int) -> Matrices:
     """Return the matrices of many points, a block of points at a time."""
     numbers = (*quantities.values(), *(segments or {}).values())
     kind = np.result_type(float, *(np.asarray(number).dtype for number in numbers))
-    layout = _layouts()["in_vacuum"] if segments is None else _sums()
+    layout = _layout(plans, "in_vacuum") if segments is None else _sums(plans)
     found = _empty(layout, points, kind)
     for start in range(0, points, _BLOCK):
         rows = slice(start, min(start + _BLOCK, points))
         count = rows.stop - start
         here = {name: _of_rows(value, rows) for name, value in quantities.items()}
-        values = values_of(evaluate(plans.in_vacuum, here, np.cos, np.sin), _layouts()["in_vacuum"])
+        values = values_of(evaluate(plans.in_vacuum, here, np.cos, np.sin), _layout(plans, "in_vacuum"))
         if segments is not None:
             along = {name: _segments_first(value, rows) for name, value in segments.items()}
-            values = _with_airloads(values, _of_airloads(here, along, count, kind))
+            values = _with_airloads(plans, values, _of_airloads(plans, here, along, count, kind))
         pool = pool_of(values, (count,), kind)
         for name, places in layout.places.items():
             np.take(pool, places, axis=1, out=found[name][rows], mode="clip")
@@ -151,12 +188,12 @@ def _empty(layout: Layout, points: int, kind: np.dtype[Any]) -> Matrices:
 
 
 @cache
-def _pairs() -> tuple[Array, dict[str, Array]]:
+def _pairs(plans: ModuleType) -> tuple[list[list[int]], dict[str, Array]]:
     """Return the different pairs of results that add up to entries, and which pair stands at each entry.
 
     A pair has a place among the values of the rotor without airloads, and a place among those of the airloads.
     """
-    places = [_layouts()[name].places for name in ("in_vacuum", "of_airloads")]
+    places = [_layout(plans, name).places for name in ("in_vacuum", "of_airloads")]
     pairs = {
         name: np.stack([own, places[1].get(name, np.zeros_like(own))], axis=-1)
         for name, own in places[0].items()
@@ -165,19 +202,19 @@ def _pairs() -> tuple[Array, dict[str, Array]]:
     found, order = np.unique(every, axis=0, return_inverse=True)
     parts = np.split(order.ravel(), np.cumsum([pair.size // 2 for pair in pairs.values()])[:-1])
     shaped = {name: part.reshape(pairs[name].shape[:-1]) for name, part in zip(pairs, parts, strict=True)}
-    return found, shaped
+    return found.tolist(), shaped
 
 
 @cache
-def _sums() -> Layout:
+def _sums(plans: ModuleType) -> Layout:
     """Return the layout of the sums of the pairs."""
-    return Layout([], _pairs()[1])
+    return Layout([], _pairs(plans)[1])
 
 
-def _with_airloads(values: Sequence[Any], results: Sequence[Any]) -> list[Any]:
+def _with_airloads(plans: ModuleType, values: Sequence[Any], results: Sequence[Any]) -> list[Any]:
     """Return the sum of each pair of values without airloads and of airloads."""
-    added = values_of(results, _layouts()["of_airloads"])
-    return [values[one] + added[other] if other else values[one] for one, other in _pairs()[0].tolist()]
+    added = values_of(results, _layout(plans, "of_airloads"))
+    return [values[one] + added[other] if other else values[one] for one, other in _pairs(plans)[0]]
 
 
 def _of_rows(value: Any, rows: slice) -> Any:
@@ -194,10 +231,10 @@ def _segments_first(value: Any, rows: slice) -> Any:
 
 
 def _of_airloads(
-    quantities: Quantities, segments: Quantities, points: int, kind: np.dtype[Any]
+    plans: ModuleType, quantities: Quantities, segments: Quantities, points: int, kind: np.dtype[Any]
 ) -> tuple[Any, ...]:
     """Return the results of the plan `of_airloads`."""
-    layout = _layouts()["segment"]
+    layout = _layout(plans, "segment")
     count = len(segments["beyond_flap_hinge"])
     results = evaluate(plans.segment, {**quantities, **segments}, np.cos, np.sin)
     pool = pool_of(values_of(results, layout), (count, points), kind)
@@ -236,18 +273,22 @@ def pool_of(values: Sequence[Any], shape: tuple[int, ...], kind: np.dtype[Any]) 
 # One point
 
 
-def _one_point(quantities: Quantities, segments: Quantities | None) -> Matrices:
+def _one_point(plans: ModuleType, quantities: Quantities, segments: Quantities | None) -> Matrices:
     """Return the matrices of one point by plain numbers, with an axis of one point."""
     blade = {name: plain_number(value) for name, value in quantities.items()}
-    found = _matrices([evaluate(plans.in_vacuum, blade, _cos, _sin)], "in_vacuum")
+    layout = _layout(plans, "in_vacuum")
+    values = values_of(evaluate(plans.in_vacuum, blade, _cos, _sin), layout)
     if segments is None:
-        return found
-    rows = [evaluate(plans.segment, {**blade, **here}, _cos, _sin) for here in _one_by_one(segments)]
-    arrays = _matrices(rows, "segment")
-    geometric = arrays["geometric_stiffness"].sum(axis=0).ravel().tolist()
+        return _matrices([values], layout)
+    of_segments = _layout(plans, "segment")
+    rows = [
+        values_of(evaluate(plans.segment, {**blade, **here}, _cos, _sin), of_segments)
+        for here in _one_by_one(segments)
+    ]
+    arrays = _matrices(rows, of_segments)
+    geometric = np.add.reduce(arrays["geometric_stiffness"], axis=0).ravel().tolist()
     results = evaluate(plans.of_airloads, blade, _work(arrays).ravel().tolist(), geometric)
-    added = _matrices([results], "of_airloads")
-    return found | {name: matrix + found[name] for name, matrix in added.items()}
+    return _matrices([_with_airloads(plans, values, results)], _sums(plans))
 
 
 def _cos(angle: complex) -> Any:
@@ -279,22 +320,8 @@ def _one_by_one(segments: Quantities) -> list[dict[str, Any]]:
     return [dict(zip(segments, numbers, strict=True)) for numbers in zip(*lists, strict=True)]
 
 
-@cache
-def _entries(plan: str) -> Array:
-    """Return the place of each entry of all matrices of a plan among zero, the results, and all negatives."""
-    every = np.concatenate([np.ravel(rows) for rows in _TABLES[plan].values()])
-    return np.where(every < 0, np.abs(every).max() - every, every)
-
-
-def _matrices(rows: Sequence[Sequence[Any]], plan: str) -> Matrices:
-    """Return the matrices (rows, ...) of some rows of results of a plan."""
-    results = np.array(rows)
-    count = results.shape[1]
-    pool = np.zeros((len(rows), 1 + 2 * count), dtype=results.dtype)
-    pool[:, 1 : 1 + count] = results
-    np.negative(results, out=pool[:, 1 + count :])
-    entries, start, found = pool.take(_entries(plan), axis=1), 0, {}
-    for name, places in _layouts()[plan].places.items():
-        found[name] = entries[:, start : start + places.size].reshape(len(rows), *places.shape)
-        start += places.size
-    return found
+def _matrices(rows: Sequence[Sequence[Any]], layout: Layout) -> Matrices:
+    """Return the matrices (rows, ...) of some rows of values as the layout counts them."""
+    every, parts = layout.at_once
+    entries, count = np.array(rows).take(every, axis=1), len(rows)
+    return {name: entries[:, part].reshape(count, *shape) for name, part, shape in parts}

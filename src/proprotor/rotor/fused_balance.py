@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from types import ModuleType
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from proprotor_equations.fused import trim as plans
 
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import Layout, pool_of, values_of
@@ -22,8 +22,6 @@ from proprotor.typing import Array
 
 _Quantities = Mapping[str, Any]
 
-LOADS = plans.SECTION_LOADS[:-2]  # the last two results say if the loads are in doubt
-MOMENTS = tuple(f"{load}_{power}" for load in LOADS for power in range(POWERS))
 # A product of matrices has the same bits in each column if the number of columns is a multiple of this: no kernel of
 # BLAS then has columns left over, which it would add up in another order.
 _COLUMNS = 16
@@ -78,7 +76,20 @@ def serves_sections(sections: BladeSections) -> bool:
     return type(sections.airfoil) is Airfoil
 
 
+@cache
+def loads_of(plans: ModuleType) -> tuple[str, ...]:
+    """Return the names of the loads of `section_loads`; its last two results say if the loads are in doubt."""
+    return tuple(plans.SECTION_LOADS[:-2])
+
+
+@cache
+def moments_of(plans: ModuleType) -> tuple[str, ...]:
+    """Return the names of the radial moments of these loads."""
+    return tuple(f"{load}_{power}" for load in loads_of(plans) for power in range(POWERS))
+
+
 def balanced(
+    plans: ModuleType,
     sections: BladeSections,
     quantities: _Quantities,
     compressibility: bool,
@@ -89,6 +100,8 @@ def balanced(
 
     Parameters
     ----------
+    plans : module
+        The fused functions, see `proprotor.rotor.fused.plans_of`.
     sections : BladeSections
     quantities : mapping
         Numbers or arrays (n,) of the blade at trim by name.
@@ -101,31 +114,33 @@ def balanced(
     blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
     line = evaluate(plans.line, blade, np.cos, np.sin)
     air = _air(sections, blade | dict(zip(plans.LINE, line, strict=True)), compressibility)
-    moments = _load_moments(sections, air, quantities["radius"], room, points, doubts)
+    moments = _load_moments(plans, sections, air, quantities["radius"], room, points, doubts)
     shape = moments.shape[2:]
-    structure = _matrices("balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
-    of_loads = evaluate(plans.work, blade | _NO_LOADS, line, moments.reshape(-1, *shape))
-    work = _matrices("work", of_loads, shape)
+    structure = _matrices(plans, "balance", evaluate(plans.balance, quantities, np.cos, np.sin), shape[1:])
+    of_loads = evaluate(plans.work, blade, line, moments.reshape(-1, *shape))
+    work = _matrices(plans, "work", of_loads, shape)
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
 
 
-def segments_of(moments: Array, sections: BladeSections) -> dict[str, Any]:
+def segments_of(plans: ModuleType, moments: Array, sections: BladeSections) -> dict[str, Any]:
     """Return sides of the hinges (segments,) and radial moments (n, segments) by name and power of r."""
-    named = zip(MOMENTS, moments.reshape(-1, *moments.shape[2:]).swapaxes(1, 2), strict=True)
+    named = zip(moments_of(plans), moments.reshape(-1, *moments.shape[2:]).swapaxes(1, 2), strict=True)
     return _NO_LOADS | sections.sides | dict(named)
 
 
 @cache
-def _layouts() -> dict[str, Layout]:
+def _layouts(plans: ModuleType) -> dict[str, Layout]:
     work = Layout.of(plans.WORK)
     work.places["work_slopes"] = work.places["work_slopes"][:, PITCH_TWICE]
     return {"work": work, "balance": Layout.of(plans.BALANCE)}
 
 
-def _matrices(plan: str, results: tuple[Any, ...], shape: tuple[int, ...]) -> dict[str, Array]:
+def _matrices(
+    plans: ModuleType, plan: str, results: tuple[Any, ...], shape: tuple[int, ...]
+) -> dict[str, Array]:
     """Return the matrices (n, rows, columns) of a plan from results of a shape (n,), or (segments, n) to be summed."""
-    layout = _layouts()[plan]
+    layout = _layouts(plans)[plan]
     kind = np.result_type(float, *results)
     pool = np.empty((len(results), *shape), dtype=kind)
     for place, result in enumerate(results):
@@ -146,6 +161,7 @@ def _air(sections: BladeSections, blade: _Quantities, compressibility: bool) -> 
 
 
 def _load_moments(
+    plans: ModuleType,
     sections: BladeSections,
     air: _Quantities,
     radius: Any,
@@ -156,21 +172,22 @@ def _load_moments(
     """Return the radial moments (loads, powers, segments, n) of the section loads, a block of points at a time."""
     numbers = (*air.values(), *vars(sections.airfoil).values())
     kind = np.result_type(float, *(np.asarray(value).dtype for value in numbers))
-    shape = len(LOADS), POWERS, len(sections.quadrature.beyond_lag_hinge), points
+    count = len(loads_of(plans))
+    shape = count, POWERS, len(sections.quadrature.beyond_lag_hinge), points
     moments = np.empty(shape, dtype=kind)
     for rows, here in sections.blocks(points):
-        count = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
+        n = len(range(points)[rows]) if isinstance(rows, slice) else len(rows)
         shared = here.quadrature.counts.ndim == 1
-        width = _full_width(count) if shared else count
+        width = _full_width(n) if shared else n
         met = {name: _columns(value, rows, width) for name, value in air.items()}
-        loads = _loads_at_stations(here, met, width, room, kind)
+        loads = _loads_at_stations(plans, here, met, width, room, kind)
         if doubts is not None:
-            of_stations = loads[-2, :, :count].T, loads[-1, :, :count].T
+            of_stations = loads[-2, :, :n].T, loads[-1, :, :n].T
             own = radius[rows] if np.ndim(radius) and len(radius) > 1 else radius
             mark_doubts(doubts, here, own, of_stations, rows, points)
-        of_loads = loads[: len(LOADS)]
+        of_loads = loads[:count]
         found = _by_product(here, of_loads) if shared else _point_by_point(here, of_loads)
-        moments[..., rows] = found[..., :count]
+        moments[..., rows] = found[..., :n]
     return moments
 
 
@@ -198,7 +215,12 @@ def _widened(some: Array, width: int) -> Array:
 
 
 def _loads_at_stations(
-    sections: BladeSections, air: dict[str, Any], width: int, room: Room, kind: np.dtype[Any]
+    plans: ModuleType,
+    sections: BladeSections,
+    air: dict[str, Any],
+    width: int,
+    room: Room,
+    kind: np.dtype[Any],
 ) -> Array:
     """Return the results (results, stations, width) of the plan `section_loads`."""
     r = _stations_first(sections.quadrature.stations, width)
@@ -214,7 +236,7 @@ def _loads_at_stations(
     given["section_pitch"] = air["pitch"] + along.twist
     given |= {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
     loads = room.array((len(plans.SECTION_LOADS), *shape), kind)
-    evaluate(plans.section_loads, given, np.sqrt, np.arctan, loads)
+    evaluate(plans.section_loads, given, loads)
     return loads
 
 

@@ -112,36 +112,46 @@ class HarmonicBalance:
         twice = np.einsum("kl,liu->kiu", derivative(count), once)
         speed = rotor_speed[..., None]
         changed = speed**2 * (blade.M @ twice) + speed * (blade.C @ once) + blade.K @ moved
-        slopes = np.einsum("uki,pkiv->puv", rows, changed) / count
-        residual = np.einsum("uki,pki->pu", rows, blade.balance) / count
+        flat = rows.reshape(len(rows), -1)
+        slopes = flat @ changed.reshape(len(changed), flat.shape[1], -1) / count
+        residual = blade.balance.reshape(len(changed), -1) @ flat.T / count
         springs, loads = self._held(motion, rotor_speed[:, 0, 0])
         residual = residual + loads
         slopes = slopes + springs
         for place, unknown in enumerate(self.unknowns):
             if unknown.part == "collective":
                 residual[:, place] += np.asarray(self.target.load)
-        return np.asarray(np.linalg.solve(slopes, residual[..., None])[..., 0])
+        return _solved(slopes, residual)
+
+    def advancing_mach(self) -> Array:
+        """Return the Mach number (points,) of the blade tips where they advance into the air."""
+        velocity, radius = self.flight.velocity, np.asarray(self.quantities["radius"])
+        across = np.hypot(velocity[:, 0], velocity[:, 1]) + self.quantities["rotor_speed"] * radius
+        return np.asarray(np.hypot(across, velocity[:, 2]) / self.quantities["speed_of_sound"])
 
     def _held(self, motion: Motion, rotor_speed: Array) -> tuple[Array, Array]:
-        """Return slopes and loads of control system, pitch damper, gimbal and what holds cyclic motions alone."""
-        size = len(self.unknowns)
-        slopes = np.zeros((len(rotor_speed), size, size), dtype=motion.collective.dtype)
-        loads = np.zeros(slopes.shape[:2], dtype=slopes.dtype)
-        count = motion.azimuths
-        for i, row in enumerate(self.unknowns):
-            spring, damper = self._spring_and_damper(row)
-            if row.part in ("angles", "tilt"):
-                values = getattr(motion, row.part)[..., row.place]
-                rate = rotor_speed[:, None] * (values @ derivative(count).T)
-                held = spring[..., None] * values + damper[..., None] * rate
-                loads[:, i] = held @ row.wave / count
-            for j, other in enumerate(self.unknowns):
-                if (other.part, other.place) == (row.part, row.place):
-                    of_rate = row.wave @ (derivative(count) @ other.wave) / count
-                    slopes[:, i, j] = (
-                        spring * (row.wave @ other.wave) / count + damper * rotor_speed * of_rate
-                    )
-        return slopes, loads
+        """Return slopes and loads of control system, pitch damper and gimbal."""
+        count, rate = motion.azimuths, derivative(motion.azimuths)
+        waves = np.stack([unknown.wave for unknown in self.unknowns])
+        kinds = [(unknown.part, unknown.place) for unknown in self.unknowns]
+        alike = np.array([[one == other for other in kinds] for one in kinds])
+        shape = (len(rotor_speed), len(waves))
+        held = [self._spring_and_damper(unknown) for unknown in self.unknowns]
+        springs, dampers = (
+            np.stack([np.broadcast_to(part[place], shape[:1]) for part in held], axis=-1)
+            for place in range(2)
+        )
+        dampers = dampers * rotor_speed[:, None]
+        slopes = springs[..., None] * (alike * (waves @ waves.T)) / count
+        slopes = slopes + dampers[..., None] * (alike * (waves @ rate @ waves.T)) / count
+        loads = np.zeros(shape, dtype=np.result_type(slopes, motion.angles))
+        for i, (part, place) in enumerate(kinds):
+            if part in ("angles", "tilt"):
+                values = getattr(motion, part)[..., place]
+                loads[:, i] = springs[:, i] * (values @ waves[i]) + dampers[:, i] * (
+                    values @ rate.T @ waves[i]
+                )
+        return slopes, loads / count
 
     def _spring_and_damper(self, unknown: _Unknown) -> tuple[Array, Array]:
         """Return what holds one motion of a blade, or of the gimbal by one blade's share, (points,) or ()."""
@@ -239,7 +249,6 @@ def periodic_trim(balance: HarmonicBalance, axial: Trim) -> PeriodicTrim:
         if (converged | np.isnan(size)).all():
             break
     blade = balance.blade(motion)
-    reason = np.where(converged & np.isfinite(before), "", _NOT_FOUND).astype(object)
     loads = blade.work.mean(axis=1) * balance.n_blades
     warning = _warnings(balance, motion, blade.doubts)
     return PeriodicTrim(
@@ -247,10 +256,35 @@ def periodic_trim(balance: HarmonicBalance, axial: Trim) -> PeriodicTrim:
         blade,
         loads[:, moving.HUB_K],
         loads[:, moving.AZIMUTH],
-        reason,
+        _reasons(balance, converged & np.isfinite(before)),
         warning,
         iterations + 1,
     )
+
+
+def _solved(slopes: Array, residual: Array) -> Array:
+    """Return the solution (points, k) of linear equations; NaN at points whose slopes have no inverse."""
+    try:
+        return np.asarray(np.linalg.solve(slopes, residual[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        found = np.full_like(residual, np.nan)
+        for point, slope in enumerate(slopes):
+            if np.linalg.matrix_rank(slope) == len(slope):
+                found[point] = np.linalg.solve(slope, residual[point])
+        return found
+
+
+def _reasons(balance: HarmonicBalance, converged: Array) -> Array:
+    """Return why each point (points,) has no periodic trim, empty where it has one."""
+    reason = np.where(converged, "", _NOT_FOUND).astype(object)
+    options, airfoil = balance.options, balance.sections.airfoil
+    if options.compressibility and not airfoil.contains_compressibility:
+        mach = np.real(balance.advancing_mach())
+        for place in np.flatnonzero(mach >= 1):
+            reason[place] = (
+                f"tip Mach number {mach[place]:.3f} where the blade advances: Prandtl-Glauert needs it below 1"
+            )
+    return reason
 
 
 def _bounded(step: Array) -> Array:

@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 from proprotor_equations import airloads, lift_slope, section
 
-from proprotor.rotor.airfoil import Airfoil, HasPoints, SectionCoefficients, SectionModel, Warns
+from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns, has_points
 from proprotor.rotor.effective_sections import EffectiveSections
 from proprotor.rotor.generated import evaluate, keywords
 from proprotor.rotor.quadrature import POWERS, RadialQuadrature, flatten_points
@@ -64,14 +64,14 @@ class BladeSections:
     @functools.cached_property
     def is_complex(self) -> bool:
         """Whether any number is complex, for derivatives by a complex step."""
-        if isinstance(self.airfoil, HasPoints) and self.airfoil.is_complex:
+        if has_points(self.airfoil) and self.airfoil.is_complex:
             return True
         return any(map(np.iscomplexobj, (self.quadrature.stations, *self.along)))
 
     @property
     def real(self) -> BladeSections:
         """The same sections without imaginary parts."""
-        airfoil = self.airfoil.real if isinstance(self.airfoil, HasPoints) else self.airfoil
+        airfoil = self.airfoil.real if has_points(self.airfoil) else self.airfoil
         return BladeSections(self.quadrature.real, self.along.each(np.real), airfoil)
 
     @property
@@ -89,7 +89,7 @@ class BladeSections:
         quadrature = self.quadrature.take(rows)
         own = slice(quadrature.stations.shape[-1])
         along = self.along.each(lambda part: part[rows][:, own] if part.ndim > 1 else part)
-        airfoil = self.airfoil.take(rows, own) if isinstance(self.airfoil, HasPoints) else self.airfoil
+        airfoil = self.airfoil.take(rows, own) if has_points(self.airfoil) else self.airfoil
         return BladeSections(quadrature, along, airfoil)
 
     def blocks(self, points: int) -> Iterator[tuple[Array | slice, BladeSections]]:
@@ -97,11 +97,14 @@ class BladeSections:
         most = max(1, _BLOCK // max(1, self.quadrature.stations.shape[-1]))
         rows: Iterable[Array | slice]
         if self.quadrature.counts.ndim == 1:
+            if points <= most:
+                yield slice(0, points), self
+                return
             rows = (slice(start, start + most) for start in range(0, points, most))
         else:
             alike = self.quadrature.alike()
             rows = (group[start : start + most] for group in alike for start in range(0, len(group), most))
-        return ((some, self.take(some)) for some in rows)
+        yield from ((some, self.take(some)) for some in rows)
 
 
 def segment_quantities(
@@ -293,7 +296,7 @@ def mark_doubts(
     first = int(np.argmax(outboard.any(axis=0)))  # stations follow each other outward
     incidence = incidence + sections.along.bent
     airfoil: SectionModel = sections.airfoil
-    if isinstance(airfoil, HasPoints):
+    if has_points(airfoil):
         airfoil = airfoil.take(slice(None), slice(first, None))
     found = cast(Warns, airfoil).warnings(incidence[..., first:], mach[..., first:])
     for text, mask in found.items():

@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from proprotor_equations import airloads
 from proprotor_equations import trim as equations
 
 from proprotor.rotor.elimination import solve
+from proprotor.rotor.fused import plans_of
 from proprotor.rotor.fused_balance import Room, balanced, segments_of, serves_sections
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import Options
@@ -109,6 +111,11 @@ class Balance:
         """Whether the fused functions hold the airfoil and the springs."""
         return serves_sections(self.sections) and self.options.frequencies is None
 
+    @functools.cached_property
+    def plans(self) -> ModuleType:
+        """The fused functions for this rotor."""
+        return plans_of(self.quantities)
+
     @property
     def rows(self) -> list[int]:
         """Rows of the balance that close the free unknowns, in the order of these unknowns."""
@@ -142,10 +149,12 @@ class Balance:
         quantities = self._at(state, rows, share)
         if self.fused:
             sections = self._sections(rows)
-            found = balanced(sections, quantities, self.options.compressibility, self.room, doubts)
+            found = balanced(
+                self.plans, sections, quantities, self.options.compressibility, self.room, doubts
+            )
             residual, structure, work, of_airloads, moments = found
             residual -= work
-            along = functools.partial(segments_of, moments, sections)
+            along = functools.partial(segments_of, self.plans, moments, sections)
         else:
             segments = self._loads(quantities, rows, doubts=doubts)
             work = self._work(segments)

@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from proprotor.rotor.airfoil import Airfoil
-from proprotor.rotor.elimination import by_lapack, eliminate, points_last
+from proprotor.rotor.elimination import eliminate, points_last, solve
 from proprotor.rotor.trim import UNKNOWNS
 from proprotor.rotor.trim_balance import Balance, Slopes, State
 from proprotor.typing import Array
@@ -29,9 +29,9 @@ _REACH = 2.0
 _WINDOWS = (4, 8, 16)  # parts of the whole path in λ, each with a P of its own, in which the bound may hold
 _POWER_STEPS = (2, 2, 4)  # after which the bound is looked at
 _FLOOR = 1e-9
-# The fewest windows of the path of one point: half of their length (1,), and their middles (windows, 1), in λ.
-_HALF_WINDOW = np.array([0.5 / _WINDOWS[0]])
-_MIDDLES = (2 * np.arange(_WINDOWS[0])[:, None] + 1) * _HALF_WINDOW
+# The fewest windows of the path of one point: half of their length, and 1 - λ at their middles (windows, 1, 1).
+_HALF_WINDOW = 0.5 / _WINDOWS[0]
+_LEFT_OUT = 1 - (2 * np.arange(_WINDOWS[0])[:, None, None] + 1) * _HALF_WINDOW
 _BLOCK = 2048  # windows and points whose matrices stay in the cache
 
 _Solution = Callable[[Array, Array], Array]
@@ -95,14 +95,26 @@ def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
     return _by_angles_or_moments(sprung, radius, found, expected) <= CONTRACTION
 
 
-def leads_to_end(before: Slopes, after: Slopes) -> bool:
-    """Return whether one point with these slopes at the start and after the search is at the end of the path.
+def leads_to_end(ends: Array) -> bool:
+    """Return whether one point with slopes at the start and after the search is at the end of the path.
 
     The bound is that of `at_end` in the fewest windows, with slopes by angles, for an airfoil with a straight lift
     line. A point without this bound may still have that of `at_end`.
+
+    Parameters
+    ----------
+    ends : array (2, 2, k, k)
+        Slopes at the start and after the search, at each with all of the airloads, and the part of the airloads.
     """
-    radius = _radius(_moved(_HALF_WINDOW, _MIDDLES, before, after, solution=by_lapack), CONTRACTION)
-    return bool((radius <= CONTRACTION).all())
+    before, after = ends
+    (full, airloads), (full_aside, airloads_aside) = (before + after) / 2, (after - before) / 2
+    size = len(full)
+    right = np.empty((len(_LEFT_OUT), size, 2 * size))
+    right[..., :size] = _HALF_WINDOW * airloads
+    np.subtract(full_aside, _LEFT_OUT * airloads_aside, out=right[..., size:])
+    moved = np.abs(solve(full - _LEFT_OUT * airloads, right))
+    matrix = moved[..., :size] + _REACH * moved[..., size:]
+    return bool((_radius(matrix.transpose(1, 2, 0), CONTRACTION) <= CONTRACTION).all())
 
 
 def at_end(

@@ -90,11 +90,10 @@ def _undeflected(one: BalanceOfOne, state: Numbers) -> Here:
 
 def _is_end_of_path(balance: Balance, passed: list[Here], start: Numbers, state: Numbers) -> bool:
     """Return whether the bound shows that the trim is connected with the undeflected blade."""
-    first, last = (
-        Slopes(np.array([here.full]), np.array([here.airloads])) for here in (passed[0], passed[-1])
-    )
-    if leads_to_end(first, last):
+    ends = np.array([(here.full, here.airloads) for here in (passed[0], passed[-1])])
+    if leads_to_end(ends):
         return True
+    first, last = (Slopes(*slopes[:, None]) for slopes in ends)
     before, after = ({name: np.array([value]) for name, value in end.items()} for end in (start, state))
     rows = np.zeros(1, dtype=int)
     return bool(at_end(balance, first, last, before, after, rows, solution=by_lapack).all())

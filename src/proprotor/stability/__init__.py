@@ -65,9 +65,10 @@ from proprotor.stability.modes import (
     coordinate_motion,
     decomposition,
     eigenvalues,
+    few_spectra,
     modes,
 )
-from proprotor.stability.names_and_steps import Steps, names_and_steps
+from proprotor.stability.names_and_steps import Steps, Walk, joined, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
@@ -94,6 +95,7 @@ __all__ = [
     "Search",
     "Spectrum",
     "Steps",
+    "Walk",
     "at_boundary",
     "at_columns",
     "attribution",
@@ -110,6 +112,7 @@ __all__ = [
     "eigenvalue_change",
     "eigenvalues",
     "error_near_zero",
+    "few_spectra",
     "find_crossings",
     "flies_free",
     "floquet",
@@ -118,6 +121,7 @@ __all__ = [
     "follow",
     "frequency_response",
     "instability",
+    "joined",
     "kinds",
     "match_modes",
     "mode_columns",

@@ -1,9 +1,12 @@
 """The assignment of columns to rows with the largest sum, for the few matrices whose best entries fall together.
 
-`scipy.optimize.linear_sum_assignment` does the same; its import takes longer than a flutter speed does.
+`scipy.optimize.linear_sum_assignment` does the same; its import takes longer than a flutter speed does. Matrices are
+small, so that plain numbers are several times quicker than arrays.
 """
 
 from __future__ import annotations
+
+from math import inf
 
 import numpy as np
 
@@ -13,9 +16,10 @@ from proprotor.typing import Array
 def best_assignment(gain: Array) -> Array:
     """Return the column of each row in the assignment of columns to rows with the largest sum.
 
-    A row keeps its best column where no other row takes it. Each further row gets its column by a shortest augmenting
-    path, as of Jonker and Volgenant (Computing 38, 1987, 325-340): prices of rows and columns make the cost of each
-    assigned pair zero and no cost negative, and the rows on the cheapest way to a free column change their columns.
+    A row keeps its best column where no row before it takes it. Each further row gets its column by a shortest
+    augmenting path, as of Jonker and Volgenant (Computing 38, 1987, 325-340): prices of rows and columns make the cost
+    of each assigned pair zero and no cost negative, and the rows on the cheapest way to a free column change their
+    columns.
 
     Parameters
     ----------
@@ -37,60 +41,60 @@ def best_assignment(gain: Array) -> Array:
         raise ValueError("an assignment needs finite gains, and a column for each row")
     if not rows:
         return np.empty(0, dtype=int)
-    cost = gain.max(axis=1, keepdims=True) - gain
-    column_of, row_of = _best_of_rows(cost)
-    row_price, column_price = np.zeros(rows), np.zeros(columns)
-    for row in np.flatnonzero(column_of < 0).tolist():
-        way, column, length, reached = _cheapest_way(cost - column_price, row_price, row_of, row)
-        on_way = np.flatnonzero(reached < length)
-        column_price[on_way] += reached[on_way] - length
-        row_price[row_of[on_way]] += length - reached[on_way]
+    column_of, row_of = gain.argmax(axis=1).tolist(), [-1] * columns
+    left = []
+    for row, column in enumerate(column_of):
+        if row_of[column] < 0:
+            row_of[column] = row
+        else:
+            left.append(row)
+    cost = (gain.max(axis=1, keepdims=True) - gain).tolist() if left else []
+    row_price, column_price = [0.0] * rows, [0.0] * columns
+    for row in left:
+        way, column, length, passed = _cheapest_way(cost, row_price, column_price, row_of, row)
+        for place, reached in passed:
+            column_price[place] += reached - length
+            row_price[row_of[place]] += length - reached
         row_price[row] += length
-        while column >= 0:
-            before = column_of[way[column]]
-            row_of[column], column_of[way[column]] = way[column], column
-            column = before
-    return column_of
+        changed = -1
+        while changed != row:
+            changed = row_of[column] = way[column]
+            column_of[changed], column = column, column_of[changed]
+    return np.array(column_of)
 
 
-def _best_of_rows(cost: Array) -> tuple[Array, Array]:
-    """Return the column of each row and the row of each column, -1 where a row's best columns are all taken."""
-    column_of, row_of = (np.full(size, -1) for size in cost.shape)
-    row, column = np.arange(len(cost)), cost.argmin(axis=1)
-    while len(row):
-        row_of[column] = row  # of several rows, the last
-        taken = np.flatnonzero(row_of >= 0)
-        column_of[row_of[taken]] = taken
-        row, free = np.flatnonzero(column_of < 0), np.flatnonzero(row_of < 0)
-        best = cost[np.ix_(row, free)]
-        also = best.min(axis=1, initial=np.inf) == 0
-        row, column = row[also], free[best[also].argmin(axis=1)] if also.any() else free
-    return column_of, row_of
-
-
-def _cheapest_way(cost: Array, row_price: Array, row_of: Array, row: int) -> tuple[Array, int, float, Array]:
+def _cheapest_way(
+    cost: list[list[float]], row_price: list[float], column_price: list[float], row_of: list[int], row: int
+) -> tuple[list[int], int, float, list[tuple[int, float]]]:
     """Return the cheapest way from a row to a free column (Dijkstra's algorithm).
 
     Returns
     -------
-    way : array (columns,) of int
+    way : list of int
         The row from which the way enters each column.
     column : int
         The free column.
     length : float
         Cost of the way.
-    reached : array (columns,)
-        Cost of the way to each column that the search has passed, else infinity.
+    passed : list of (int, float)
+        The columns that the search has passed, and the cost of the way to each.
     """
-    shortest, way = np.full(len(row_of), np.inf), np.empty(len(row_of), dtype=int)
-    reached, length = np.full(len(row_of), np.inf), 0.0
+    shortest, way, ahead = [inf] * len(row_of), [row] * len(row_of), list(range(len(row_of)))
+    passed: list[tuple[int, float]] = []
+    here, length = row, 0.0
     while True:
-        through = np.where(reached < np.inf, np.inf, length - row_price[row] + cost[row])
-        way[through < shortest] = row
-        shortest = np.where(reached < np.inf, np.inf, np.minimum(shortest, through))
-        length = shortest.min()
-        nearest = np.flatnonzero(shortest == length)
-        column = nearest[row_of[nearest].argmin()]  # a free one first
-        reached[column], row = length, row_of[column]
-        if row < 0:
-            return way, column, length, reached
+        own, start = cost[here], length - row_price[here]
+        nearest, length = -1, inf
+        for column in ahead:
+            through = start + own[column] - column_price[column]
+            if through < shortest[column]:
+                shortest[column], way[column] = through, here
+            else:
+                through = shortest[column]
+            if through < length or (through == length and row_of[column] < 0):  # a free one first
+                nearest, length = column, through
+        if row_of[nearest] < 0:
+            return way, nearest, length, passed
+        passed.append((nearest, length))
+        ahead.remove(nearest)
+        here = row_of[nearest]

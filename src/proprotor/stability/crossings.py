@@ -32,7 +32,7 @@ _ROUNDS = 20  # of parting
 _MOST_SOLVES = 1000  # of a line, after which no more of its steps are parted
 _HALVINGS = 6  # of a step at whose other end nothing can be analysed
 _TRUST = 0.5  # in cubics whose slopes are differences
-_LINES_AT_ONCE = 16  # whose steps stay in the cache while they are looked at
+_LINES_AT_ONCE = 32  # whose steps stay in the cache while they are looked at
 
 
 class Search:

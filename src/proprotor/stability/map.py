@@ -103,14 +103,17 @@ def stability_map(
     x, y = values
     points = len(x) * len(y)
     check_memory("axes", f"{points:.4g} points", _BYTES_PER_POINT * points, "the map", "take larger steps")
-    grid_x, grid_y = (part.reshape(-1) for part in np.meshgrid(x, y))
+    inner = int(
+        names[1] == AIRSPEED
+    )  # the axis along which points follow each other: what varies least is derived once
+    grid = np.meshgrid(x, y, indexing="ij" if inner else "xy")
+    grid_x, grid_y = (part.reshape(-1) for part in grid)
     parts = []
-    for some in _batches(points):
+    for some in _batches(points, max(1, _AT_ONCE // len(values[inner])) * len(values[inner])):
         model = plane(grid_x[some], grid_y[some])
         parts.append((*_largest_growth(model, level), model.trim.reason, model.trim.warning))
-    largest, value, reason, warning = (
-        np.concatenate(part).reshape(len(y), len(x)) for part in zip(*parts, strict=True)
-    )
+    found_there = [np.concatenate(part).reshape(grid[0].shape) for part in zip(*parts, strict=True)]
+    largest, value, reason, warning = (part.T if inner else part for part in found_there)
     edges, solves = _crossings(plane, x, y, largest, level)
     found = _dataset(names, values, largest, value, edges)
     found["reason"] = names[::-1], reason.astype(str), {"long_name": "why a point failed"}

@@ -24,7 +24,7 @@ from proprotor.stability.assignment import best_assignment
 from proprotor.stability.real_modes import COUPLED, RealModes, closeness, inverse, likeness, quality
 from proprotor.typing import Array
 
-_BLOCK = 64  # steps whose matrices stay in the cache
+_BLOCK = 128  # steps whose matrices stay in the cache
 _APART = (
     10.0  # more than likeness and distance can be: taken off where two modes are of blocks that do not couple
 )

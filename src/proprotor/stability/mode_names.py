@@ -143,14 +143,16 @@ def _assign_names(groups: tuple[_Group, ...], values: Array, upper: Array, share
     gain = np.take_along_axis(rank, upper, 1).T * (_TIE * of_name)[:, None, None]
     gain += shares
     best: Array = gain.argmax(axis=0)
-    states_of_mode = np.where(np.take_along_axis(values, upper, 1).T.imag > 0, 2, 1)
-    counts = np.array([(states_of_mode * (best == name)).sum(axis=0) for name in range(len(shares))])
+    is_pair = np.take_along_axis(values, upper, 1).T.imag > 0
+    points = np.arange(len(values))
+    counts = np.bincount(
+        (best * len(points) + points).ravel(), (1 + is_pair).ravel(), minlength=len(shares) * len(points)
+    ).reshape(len(shares), -1)
     for one in groups:
         for point in np.flatnonzero((counts[one.names] != one.counts[:, None]).any(axis=0)):
-            mode = mode_of_states(values[[point]], upper[[point]])[0, one.states]
-            fit = shares[one.names[:, None], mode, point].T
-            fit = fit + _TIE * (rank[point, one.states, None] * of_name[one.names])
-            best[mode, point] = one.names[_assigned(fit, one.slots, values[point, one.states])]
+            modes = np.flatnonzero((upper[point] >= one.states.start) & (upper[point] < one.states.stop))
+            fit = gain[one.names, modes[:, None], point]
+            best[modes, point] = one.names[_assigned(one, fit, is_pair[modes, point])]
     return best
 
 
@@ -158,17 +160,15 @@ class _Group(NamedTuple):
     """Names and states of coordinates that do not couple with others.
 
     names (k,) : places of the names in `name_list`; states : place of the states in the spectrum; counts (k,) : number
-    of states that have each name.
+    of states that have each name; whole, half : the names of two states, a pair or two real roots, and those of one, by
+    their place in `names`.
     """
 
     names: Array
     states: slice
     counts: Array
-
-    @property
-    def slots(self) -> Array:
-        """The names, by their place in the group, in as many places as the group has states."""
-        return np.repeat(np.arange(len(self.counts)), self.counts)
+    whole: list[int]
+    half: list[int]
 
 
 @lru_cache(maxsize=16)  # of the models of an analysis, which has many batches
@@ -182,7 +182,8 @@ def _groups(
         names = [(known.index(name), motion.places) for motion in some for name in motion.names]
         counts = [1 if len(places) == 1 and own[places[0]] not in held else 2 for _, places in names]
         states = slice(first, first := first + sum(counts))
-        found.append(_Group(np.array([name for name, _ in names]), states, np.array(counts)))
+        whole, half = ([place for place, one in enumerate(counts) if one == count] for count in (2, 1))
+        found.append(_Group(np.array([name for name, _ in names]), states, np.array(counts), whole, half))
     return tuple(found)
 
 
@@ -228,28 +229,39 @@ def _ranks(values: Array) -> Array:
     return rank
 
 
-def _assigned(gain: Array, slots: Array, values: Array) -> Array:
-    """Return the best assignment (states,) of one point that gives both states of a pair one name."""
-    upper, real = np.flatnonzero(values.imag > 0), np.flatnonzero(values.imag == 0)
-    given: Array = slots[best_assignment(gain[:, slots])]
-    if (given[upper] == given[upper + 1]).all():
-        return given
+def _assigned(group: _Group, gain: Array, is_pair: Array) -> Array:
+    """Return the best assignment of names to the modes (modes,) of one point, by their place in the group.
+
+    Both states of a pair have one name.
+
+    Parameters
+    ----------
+    group : _Group
+    gain : array (modes, names)
+    is_pair : array (modes,) of bool
+        Whether a mode is a pair, or a real root.
+    """
+    pairs, real = is_pair.nonzero()[0], (~is_pair).nonzero()[0]
+    if len(pairs) != len(group.whole):
+        modes = np.repeat(np.arange(len(gain)), 1 + is_pair)
+        slots = np.repeat(np.arange(len(group.counts)), group.counts)
+        of_states = slots[best_assignment(gain[modes[:, None], slots])]
+        first = np.searchsorted(modes, np.arange(len(gain)))
+        given: Array = of_states[first]
+        # Of two rates that swing as one pair, the pair has one of their names.
+        if len(pairs) > len(group.whole) or (of_states[first[pairs] + 1] == given[pairs]).all():
+            return given
     # Two real roots that fit different names would split the names of a pair: try each choice of names for real roots.
-    counts = np.bincount(slots)
-    whole, half = np.flatnonzero(counts == 2), np.flatnonzero(counts == 1)
-    if len(upper) > len(whole):  # two rates swing as one pair, which has one of their names
-        given[upper + 1] = given[upper]
-        return given
-    largest = -np.inf
-    for left in combinations(whole.tolist(), len(whole) - len(upper)):
-        of_pairs, of_real = np.setdiff1d(whole, left), np.array([*left, *left, *half], dtype=int)
-        pairs, roots = (
-            best_assignment(gain[np.ix_(upper, of_pairs)]),
-            best_assignment(gain[np.ix_(real, of_real)]),
-        )
-        total = 2 * gain[upper, of_pairs[pairs]].sum() + gain[real, of_real[roots]].sum()
+    given, largest = np.empty(len(gain), dtype=int), -np.inf
+    for left in combinations(group.whole, len(group.whole) - len(pairs)):
+        of_pairs = [name for name in group.whole if name not in left]
+        total, chosen = 0.0, []
+        for modes, names, states in ((pairs, of_pairs, 2), (real, [*left, *left, *group.half], 1)):
+            fit = gain[modes[:, None], names]
+            best = best_assignment(fit)
+            total += states * fit[np.arange(len(modes)), best].sum()
+            chosen.append(np.array(names, dtype=int)[best])
         if total > largest:
             largest = total
-            given[upper] = given[upper + 1] = of_pairs[pairs]
-            given[real] = of_real[roots]
+            given[pairs], given[real] = chosen
     return given

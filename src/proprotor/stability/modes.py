@@ -18,9 +18,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.model import stamp
+from proprotor.model.batches import few_at_once
 from proprotor.model.first_order import (
     blocks,
     first_order,
+    first_order_at,
     have_modes,
     held_coordinates,
     lack_azimuths,
@@ -29,7 +31,7 @@ from proprotor.model.first_order import (
 )
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
-from proprotor.stability.matching import Modes, Spectrum, size_of
+from proprotor.stability.matching import Modes, Spectrum
 from proprotor.stability.participation import coordinate_shares
 from proprotor.typing import Array, Dataset
 
@@ -57,6 +59,17 @@ def decomposition(model: LinearModel, held: list[int] | None = None) -> Spectrum
     return Spectrum(values, right, model.shapes, tuple(held), blocks(model, held))
 
 
+def few_spectra(model: LinearModel) -> Iterator[tuple[LinearModel, Spectrum]]:
+    """Yield the points of a batch a few at a time, with M, C and K only, and their eigenvalues and right vectors.
+
+    The vectors of all points of a large batch would not stay in the cache.
+    """
+    held = held_coordinates(model)
+    for rows in few_at_once(model.M.shape[:-2]):
+        some = some_points(model, rows)
+        yield some, decomposition(some, held)
+
+
 def eigenvalues(model: LinearModel) -> Array:
     """Return the eigenvalues (..., states) alone, in no particular order; NaN where `decomposition` has NaN."""
     held, shape = held_coordinates(model), model.M.shape[:-2]
@@ -64,10 +77,20 @@ def eigenvalues(model: LinearModel) -> Array:
     places = blocks(model, held)
     for points, part in _alike(model):
         for (_, columns), own in zip(places, part.blocks, strict=True):
-            found = np.linalg.eigvals(first_order(_of_block(part, own)))
-            found = np.where(_pairs_of_noise(found), 0, found)
+            found = _eigenvalues(_of_block(part, own))
             values[points, columns.start : columns.start + found.shape[-1]] = found
     return values
+
+
+def _eigenvalues(model: LinearModel) -> Array:
+    """Return the eigenvalues (..., states) of points with the same states, whose coordinates may all couple."""
+    states = len(held_coordinates(model)) + len(model.dofs)
+    found = np.empty((*model.M.shape[:-2], states), dtype=complex)
+    for rows in few_at_once(model.M.shape[:-2]):  # the matrices of all points would not stay in the cache
+        found[rows] = np.linalg.eigvals(first_order_at(model, rows))
+    if (noise := _pairs_of_noise(found)).any():
+        found[noise] = 0
+    return found
 
 
 def _alike(model: LinearModel) -> Iterator[tuple[Array | EllipsisType, LinearModel]]:
@@ -163,9 +186,9 @@ def _pairs_of_noise(values: Array) -> Array:
 
     Coordinates that have a rate alone have such roots, as many as nothing damps.
     """
-    size = size_of(values)
-    noise = _ROUNDING * size.max(axis=-1, keepdims=True, initial=0)
-    return np.asarray((values.imag != 0) & (size <= noise))
+    square = values.real**2 + values.imag**2
+    noise = square <= _ROUNDING**2 * square.max(axis=-1, keepdims=True, initial=0)
+    return np.asarray(noise & (values.imag != 0))
 
 
 def _real(model: LinearModel) -> LinearModel:

@@ -1,11 +1,8 @@
-"""What moves in the modes of many points, and which mode is which at the next point, some of the points at a time.
-
-Names and steps both need left vectors. Their arrays are made for a part of the points, so that they stay in the cache
-and take no memory.
-"""
+"""What moves in the modes of many points, and which mode is which at the next point; names and steps share vectors."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,8 +14,6 @@ from proprotor.stability.mode_names import named_after
 from proprotor.stability.participation import participation
 from proprotor.stability.real_modes import RealModes, by_pairs, mode_of_states
 from proprotor.typing import Array
-
-_AT_ONCE = 256  # points
 
 
 class NamedPoints(NamedTuple):
@@ -59,13 +54,21 @@ class Steps(NamedTuple):
     quality: Array
 
 
-def names_and_steps(model: LinearModel, spectrum: Spectrum, group: list[int]) -> tuple[NamedPoints, Steps]:
-    """Return what moves in the states of the points of many lines, and the steps along each line.
+class Walk(NamedTuple):
+    """Eigenvalues (points, states) of many lines, one line after the other, what moves in them, and the steps."""
+
+    values: Array
+    named: NamedPoints
+    steps: Steps
+
+
+def names_and_steps(model: LinearModel, spectrum: Spectrum, group: list[int]) -> Walk:
+    """Return what moves in the states of the points of some lines, and the steps along each line.
 
     Parameters
     ----------
     model : LinearModel
-        Points (lines, points).
+        Points (lines, points), few enough for their vectors to stay in the cache.
     spectrum : Spectrum
         Eigenvalues and vectors of the model.
     group : list of int
@@ -79,21 +82,27 @@ def names_and_steps(model: LinearModel, spectrum: Spectrum, group: list[int]) ->
     )
     shape = flat.values.shape
     share, of_group = np.full((2, *shape), np.nan)
-    found = NamedPoints(np.full(shape, -1), share, of_group, np.zeros(shape, dtype=int))
+    named, real = NamedPoints(np.full(shape, -1), share, of_group, np.zeros(shape, dtype=int)), {}
+    for places, pairs in by_pairs(flat.values):
+        values = flat.values[places]
+        real[pairs] = RealModes.of(values, flat.right[places], pairs)
+        own = some_points(model, np.unravel_index(places, (lines, points)))
+        for array, part in zip(named, _named(own, values, real[pairs], group), strict=True):
+            array[places] = part
     before, after = _neighbours(spectrum.works)
-    steps = Steps(before, after, np.empty((len(before), states), dtype=int), np.empty((len(before), states)))
-    width = points * max(1, _AT_ONCE // points)
-    for start in range(0, lines * points, width):
-        some, real = flat.at(slice(start, start + width)), {}
-        for places, pairs in by_pairs(some.values):
-            real[pairs] = RealModes.of(some.values[places], some.right[places], pairs)
-            own = some_points(model, np.unravel_index(start + places, (lines, points)))
-            for array, part in zip(found, _named(own, some.values[places], real[pairs], group), strict=True):
-                array[start + places] = part
-        rows = slice(*np.searchsorted(after, [start, start + width]))
-        matches = match_modes(some, before[rows] - start, after[rows] - start, real)
-        steps.successor[rows], steps.quality[rows] = matches
-    return found, steps
+    return Walk(flat.values, named, Steps(before, after, *match_modes(flat, before, after, real)))
+
+
+def joined(walks: Sequence[Walk]) -> Walk:
+    """Return the lines of all walks, in their order."""
+    values = np.concatenate([walk.values for walk in walks])
+    named = NamedPoints(*map(np.concatenate, zip(*(walk.named for walk in walks), strict=True)))
+    first = np.cumsum([0, *(len(walk.values) for walk in walks[:-1])])
+    steps = (
+        Steps(start + walk.steps.before, start + walk.steps.after, *walk.steps[2:])
+        for start, walk in zip(first, walks, strict=True)
+    )
+    return Walk(values, named, Steps(*map(np.concatenate, zip(*steps, strict=True))))
 
 
 def _named(model: LinearModel, values: Array, real: RealModes, group: list[int]) -> NamedPoints:

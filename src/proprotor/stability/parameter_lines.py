@@ -17,8 +17,9 @@ from proprotor.deck.vary import check_input, design_inputs
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
 from proprotor.model import stamp
+from proprotor.model.batches import as_grid
 from proprotor.model.configuration import Configuration
-from proprotor.model.first_order import some_points
+from proprotor.model.first_order import in_one_axis, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.quantities import batch_shape
 from proprotor.needs import check_memory
@@ -82,9 +83,8 @@ class ParameterLine:
 
 def models_at(case: Configuration, inputs: Mapping[str, Any], options: Mapping[str, Any]) -> LinearModel:
     """Return the models of a case with other values (k,) of some inputs, the airspeed (m/s) among them."""
-    values = dict(inputs)
-    speed = values.pop(AIRSPEED)
-    return (vary_case(case, values) if values else case).linearize(speed, **options)
+    values, speed = as_grid({name: one for name, one in inputs.items() if name != AIRSPEED}, inputs[AIRSPEED])
+    return in_one_axis((vary_case(case, values) if values else case).linearize(speed, **options))
 
 
 def line_of_case(

@@ -21,9 +21,8 @@ from proprotor.stability.root_pairs import (
     joining_roots,
     keep_off,
     may_meet,
-    ways,
 )
-from proprotor.stability.steps import Steps
+from proprotor.stability.steps import Ends, Steps
 from proprotor.typing import Array
 
 _UNSEEN = 0.5  # of the bend: error of a cubic that nothing was compared with
@@ -61,20 +60,20 @@ def where_to_part(
     share = np.full(len(steps.before), np.nan)
     if not len(share):
         return share
-    ends, sides, square = steps.ends(points), steps.sides(points), _squares(steps, points)
-    bends = bend(ends)
+    ends = Ends(steps, points)
+    sides, square, bends = ends.sides, _squares(ends), bend(ends.cubics)
     width = np.where(np.isnan(steps.wrong), _UNSEEN * bends, np.fmax(steps.wrong, _SEEN * bends)) / trust
     # A root that is neutral all along crosses nothing.
-    counts = steps.counts(points) & (sides != 0).any(axis=0)
-    near = counts & _may_reach(steps, points, ends, sides, width + _most_parted(*square))
-    _learn_quality(steps, points, near)
+    counts = ends.counts & (sides != 0).any(axis=0)
+    near = counts & _may_reach(ends, width + _most_parted(*square))
+    _learn_quality(ends, near)
     poor = counts & (steps.quality < POOR)
     row, state = np.nonzero(poor & near)
-    near[row, state] = ~keep_off(steps, points, row, state, level, trust, pairs)
+    near[row, state] = ~keep_off(ends, row, state, level, trust, pairs)
     reasons = (
-        _band_is_open(near, ends, sides, width, steps.at_ends(points.error), *square),
+        _band_is_open(near, ends.cubics, sides, width, ends.errors, *square),
         _roots_are_alike(steps, poor, near, names),
-        _real_roots_join(steps, points, sides, trust),
+        _real_roots_join(ends, trust),
     )
     for place in reasons:  # the last reason counts
         share = np.where(np.isnan(place), share, place)
@@ -101,15 +100,15 @@ def _roots_are_alike(steps: Steps, poor: Array, near: Array, names: bool) -> Arr
     return np.where(poor.any(axis=1) & (steps.depth < deepest), 0.5, np.nan)
 
 
-def _real_roots_join(steps: Steps, points: Points, sides: Array, trust: float) -> Array:
+def _real_roots_join(ends: Ends, trust: float) -> Array:
     """Return where (steps,) to part steps in which two real roots of one end are one pair at the other end.
 
     Such a step is parted where its ends do not tell how often the two roots cross the level. The mean μ of the two
     roots and the square of half their distance, δ², run smoothly through the point at which the roots join; the roots
     μ ± δ do not, and a cubic through their own values and slopes is worth nothing.
     """
-    share = np.full(len(steps.before), np.nan)
-    rows, couples, real_end, mean, square = joining_roots(steps, points)
+    share, sides, depth = np.full(len(ends.length), np.nan), ends.sides, ends.steps.depth
+    rows, couples, real_end, mean, square = joining_roots(ends)
     if not len(rows):
         return share
     one, other = sides[real_end, rows, couples[0]], sides[real_end, rows, couples[1]]
@@ -119,7 +118,7 @@ def _real_roots_join(steps: Steps, points: Points, sides: Array, trust: float) -
     reaches = (one == other) & (one == pair) & (pair != 0) & (highest >= 0)
     # On different sides one of the two crosses before they join, or both do after.
     place = np.where(one * other < 0, joint, np.where(reaches, where, np.nan))
-    found = np.isfinite(place) & (steps.depth[rows] < _DEEPEST_JOINT)
+    found = np.isfinite(place) & (depth[rows] < _DEEPEST_JOINT)
     share[rows[found]] = place[found]
     return share
 
@@ -139,32 +138,31 @@ def _reach_of_couple(mean: Array, square: Array, side: Array, trust: float) -> t
     return reach[np.arange(len(place)), place], _GRID[place]
 
 
-def _may_reach(steps: Steps, points: Points, ends: Array, sides: Array, width: Array) -> Array:
+def _may_reach(ends: Ends, width: Array) -> Array:
     """Return which roots come as near to the level as they may go over the step, or cross the level."""
-    reach = ways(steps, points) + width + np.abs(ends[2:]).max(axis=0)
-    return np.asarray((np.abs(ends[:2]).min(axis=0) <= reach) | (sides[0] * sides[1] < 0))
+    reach = ends.ways + width + np.abs(ends.cubics[2:]).max(axis=0)
+    return np.asarray((np.abs(ends.cubics[:2]).min(axis=0) <= reach) | (ends.sides[0] * ends.sides[1] < 0))
 
 
-def _learn_quality(steps: Steps, points: Points, near: Array) -> None:
+def _learn_quality(ends: Ends, near: Array) -> None:
     """Set the quality of some states of steps by values alone: 0 where a state may meet another, else 1."""
-    row, state = np.nonzero(near & np.isnan(steps.quality))
+    quality, block = ends.steps.quality, ends.points.spectrum.block
+    row, state = np.nonzero(near & np.isnan(quality))
     if len(row):
-        first, last = steps.at_ends(points.spectrum.values)
-        way, block = ways(steps, points), points.spectrum.block
-        meeting = may_meet(first[row], last[row], way[row], state[:, None], block)
-        steps.quality[row, state] = ~meeting[:, 0].any(axis=1)
+        first, last = ends.values[:, row]
+        meeting = may_meet(first, last, ends.ways[row], state[:, None], block)
+        quality[row, state] = ~meeting[:, 0].any(axis=1)
 
 
-def _squares(steps: Steps, points: Points) -> tuple[Array, Array]:
+def _squares(ends: Ends) -> tuple[Array, Array]:
     """Return the cubics of (Im λ)² over steps, by their ends (4, steps, states), and how wrong they may be.
 
     The error (steps, states) is minus infinity for roots that are no pairs at both ends. Where a cubic is below zero a
     pair has parted into two real roots, by the square root of what is missing.
     """
-    values = points.spectrum.values
-    slopes = steps.at_ends(2 * values.imag * points.change.imag) * steps.length(points)
-    ends = np.concatenate([steps.at_ends(values.imag) ** 2, slopes])
-    return ends, np.where((ends[:2] > 0).all(axis=0), _UNSEEN * bend(ends), -np.inf)
+    frequency = ends.values.imag
+    cubics = np.concatenate([frequency**2, 2 * frequency * ends.changes.imag * ends.length])
+    return cubics, np.where((cubics[:2] > 0).all(axis=0), _UNSEEN * bend(cubics), -np.inf)
 
 
 def _most_parted(square: Array, width: Array) -> Array:

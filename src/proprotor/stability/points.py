@@ -125,12 +125,21 @@ def solve_points(
     count = max(2, -(-len(line) // _AT_ONCE))
     parts = [
         solve_points(models, line[some], position[some], level, forgiving, states, plain)
-        for some in np.array_split(np.arange(len(line)), count)
+        for some in _parts(line, count)
     ]
     counts = {part.points.growth.shape[1] for part in parts if part.points is not None}
     if len(counts) > 1:  # a shaft holds the azimuth in some parts alone
         return solve_points(models, line, position, level, forgiving, max(counts), plain)
     return reduce(_together, parts)
+
+
+def _parts(line: Array, count: int) -> list[Array]:
+    """Return the places of points in about so many parts, of whole lines where there is more than one line."""
+    ends = np.flatnonzero(line[1:] != line[:-1]) + 1
+    cuts = np.arange(1, count) * len(line) // count
+    if len(ends):
+        cuts = np.unique(ends[np.minimum(np.searchsorted(ends, cuts), len(ends) - 1)])
+    return np.split(np.arange(len(line)), cuts)
 
 
 def _together(one: Solved, other: Solved) -> Solved:
@@ -171,7 +180,9 @@ def _values_alone(
     states = values.shape[-1] if states is None else states
     if not works.any():
         return Solved(None, works, *_texts(model, states))
-    values, error = (_with_room(part[works], model, states) for part in (values, error))
+    if not works.all():
+        values, error = values[works], error[works]
+    values, error = (_with_room(part, model, states) for part in (values, error))
     held = held_coordinates(model, states)
     none = np.empty((*values.shape, 0), dtype=complex)
     spectrum = Spectrum(values, none, held=tuple(held), blocks=blocks(model, held))
@@ -182,6 +193,8 @@ def _values_alone(
 
 def _with_room(values: Array, model: LinearModel, states: int) -> Array:
     """Return values (k, states of the model) with NaN at the end of each block that has room for more states."""
+    if values.shape[1] == states:
+        return values
     found = np.full((len(values), states), np.nan, dtype=values.dtype)
     narrow, wide = (blocks(model, held_coordinates(model, count)) for count in (values.shape[-1], states))
     for (_, own), (_, new) in zip(narrow, wide, strict=True):

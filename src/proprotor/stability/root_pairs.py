@@ -15,9 +15,8 @@ import numpy as np
 
 from proprotor.stability.cubic import band, bend, hermite
 from proprotor.stability.matching import size_of, way_to_zero
-from proprotor.stability.points import Points
 from proprotor.stability.root_error import growth
-from proprotor.stability.steps import Steps
+from proprotor.stability.steps import Ends, Steps
 from proprotor.typing import Array
 
 _APPROACH = 0.9  # of the distance at the nearer end: roots that come nearer on the straight way may meet
@@ -37,14 +36,7 @@ class _Smooth(NamedTuple):
     wrong: Array
 
 
-PairsWithin = Callable[[Steps, Points, Array, Array, Array], tuple[_Smooth, _Smooth]]
-
-
-def ways(steps: Steps, points: Points) -> Array:
-    """Return how far (steps, states) each root may go over its step, by its ends or by its change at both ends."""
-    first, last = steps.at_ends(points.spectrum.values)
-    by_change = size_of(steps.at_ends(points.change)).sum(axis=0) * steps.length(points)
-    return np.asarray(np.fmax(size_of(last - first), by_change))
+PairsWithin = Callable[[Ends, Array, Array, Array], tuple[_Smooth, _Smooth]]
 
 
 def may_meet(first: Array, last: Array, way: Array, state: Array, block: Array) -> Array:
@@ -69,11 +61,10 @@ def may_meet(first: Array, last: Array, way: Array, state: Array, block: Array) 
     return np.asarray((near_each_other | within_reach) & others_alone & same_block)
 
 
-def _partners(steps: Steps, points: Points, row: Array, state: Array) -> Array:
+def _partners(ends: Ends, row: Array, state: Array) -> Array:
     """Return the root (m,) that one root of some steps, state (m,), may meet, if neither may meet a third; else -1."""
-    first, last = steps.at_ends(points.spectrum.values)
-    first, last, way = first[row], last[row], ways(steps, points)[row]
-    block, rows = points.spectrum.block, np.arange(len(state))
+    first, last, way = ends.values[0, row], ends.values[1, row], ends.ways[row]
+    block, rows = ends.points.spectrum.block, np.arange(len(state))
     meeting = may_meet(first, last, way, state[:, None], block)[:, 0]
     partner = meeting.argmax(axis=1)
     others = may_meet(first, last, way, partner[:, None], block)[:, 0]
@@ -81,21 +72,18 @@ def _partners(steps: Steps, points: Points, row: Array, state: Array) -> Array:
     return np.where(alone, partner, -1)
 
 
-def keep_off(
-    steps: Steps, points: Points, row: Array, state: Array, level: float, trust: float, within: PairsWithin
-) -> Array:
+def keep_off(ends: Ends, row: Array, state: Array, level: float, trust: float, within: PairsWithin) -> Array:
     """Return which states (m,) of steps stay on one side of the level for certain, with the root that each may meet."""
     found = np.zeros(len(row), dtype=bool)
     if not len(row):
         return found
-    partner = _partners(steps, points, row, state)
-    sides = steps.sides(points)
-    own, other = (sides[:, row, one] for one in (state, partner))
+    partner = _partners(ends, row, state)
+    own, other = (ends.sides[:, row, one] for one in (state, partner))
     side = own[0]
     alike = (np.concatenate([own, other]) == side).all(axis=0)
     asked = np.flatnonzero((partner >= 0) & (np.abs(side) == 1) & alike)
     if len(asked):
-        pairs = within(steps, points, row[asked], state[asked], partner[asked])
+        pairs = within(ends, row[asked], state[asked], partner[asked])
         found[asked] = _off(*pairs, side[asked], level, trust)
     return found
 
@@ -111,41 +99,30 @@ def _off(sums: _Smooth, squares: _Smooth, side: Array, level: float, trust: floa
     return np.asarray((np.minimum(*margins) > 0).all(axis=1))
 
 
-def by_derivatives(
-    steps: Steps, points: Points, row: Array, state: Array, partner: Array
-) -> tuple[_Smooth, _Smooth]:
+def by_derivatives(ends: Ends, row: Array, state: Array, partner: Array) -> tuple[_Smooth, _Smooth]:
     """Return s and d (m, places) of pairs within their steps, cubics by the derivatives of both roots."""
-    sums, squares = _sums_and_squares(steps, points, row, state, partner)
+    sums, squares = _sums_and_squares(ends, row, state, partner)
     return _cubic(sums), _cubic(squares)
 
 
-def _sums_and_squares(
-    steps: Steps, points: Points, row: Array, state: Array, partner: Array
-) -> tuple[Array, Array]:
+def _sums_and_squares(ends: Ends, row: Array, state: Array, partner: Array) -> tuple[Array, Array]:
     """Return s and d of pairs at the ends of their steps (4, m): values, then slopes times the length of the step."""
-    before, after = steps.before[row], steps.after[row]
-    length = points.position[after] - points.position[before]
-    values, changes = points.spectrum.values, points.change
-    sums, squares = np.empty((2, 4, len(row)), dtype=complex)
-    ends = ((before, state, partner), (after, *(steps.successor[row, one] for one in (state, partner))))
-    for end, (point, one, other) in enumerate(ends):
-        apart = values[point, one] - values[point, other]
-        sums[end] = values[point, one] + values[point, other]
-        sums[2 + end] = length * (changes[point, one] + changes[point, other])
-        squares[end] = apart**2
-        squares[2 + end] = 2 * length * apart * (changes[point, one] - changes[point, other])
-    return sums, squares
+    value, other = (ends.values[:, row, one] for one in (state, partner))
+    change, other_change = (ends.changes[:, row, one] * ends.length[row, 0] for one in (state, partner))
+    apart = value - other
+    sums = np.concatenate([value + other, change + other_change])
+    return sums, np.concatenate([apart**2, 2 * apart * (change - other_change)])
 
 
-def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
+def _couples(ends: Ends) -> tuple[Array, Array, Array]:
     """Return steps (k,), two states (2, k) that are real at one end and a pair at the other, and which end that is."""
-    ends = steps.at_ends(points.spectrum.values)
-    real, block = ends.imag == 0, points.spectrum.block
+    values, block = ends.values, ends.points.spectrum.block
+    real = values.imag == 0
     found = []
     for end in (0, 1):
-        mixed = real[end] & ~real[1 - end] & np.isfinite(ends[0]) & np.isfinite(ends[1])
+        mixed = real[end] & ~real[1 - end] & np.isfinite(values[0]) & np.isfinite(values[1])
         some = np.flatnonzero(mixed.sum(axis=1) > 1)
-        own, pair = mixed[some], ends[1 - end, some]
+        own, pair = mixed[some], values[1 - end, some]
         join = own[:, :, None] & own[:, None, :] & (pair[:, :, None] == pair[:, None, :].conj())
         join &= block[:, None] == block
         row, one, other = np.nonzero(np.triu(join, 1))
@@ -154,13 +131,13 @@ def _couples(steps: Steps, points: Points) -> tuple[Array, Array, Array]:
     return rows, np.stack(couples), ends_of
 
 
-def joining_roots(steps: Steps, points: Points) -> tuple[Array, Array, Array, Array, Array]:
+def joining_roots(ends: Ends) -> tuple[Array, Array, Array, Array, Array]:
     """Return steps (k,) in which two real roots join or part, the two states (2, k), the end at which they are real.
 
     Then the cubics (4, k), by their ends, of the mean of the two roots and of the square of half their distance.
     """
-    rows, couples, real_end = _couples(steps, points)
-    sums, squares = _sums_and_squares(steps, points, rows, *couples)
+    rows, couples, real_end = _couples(ends)
+    sums, squares = _sums_and_squares(ends, rows, *couples)
     return rows, couples, real_end, sums.real / 2, squares.real / 4
 
 
@@ -169,14 +146,13 @@ def _cubic(ends: Array) -> _Smooth:
     return _Smooth(hermite(_INSIDE, ends[:, :, None]), bend(ends)[:, None] * band(_INSIDE))
 
 
-def along_scan(
-    steps: Steps, points: Points, row: Array, state: Array, partner: Array
-) -> tuple[_Smooth, _Smooth]:
+def along_scan(ends: Ends, row: Array, state: Array, partner: Array) -> tuple[_Smooth, _Smooth]:
     """Return s and d of pairs by polynomials through six points of the scan about the step; NaN where a line has fewer.
 
     Their difference from polynomials through four points is the error of the latter, and an upper bound of their own.
     The steps are all steps of their lines, one after the other.
     """
+    steps, points = ends.steps, ends.points
     line = points.line[steps.before]
     first, last = np.searchsorted(line, line[row]), np.searchsorted(line, line[row], side="right")
     start = np.clip(row - MANY // 2 + 1, first, np.maximum(last - MANY + 1, first))

@@ -9,13 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from proprotor.stability.assignment import best_assignment
-from proprotor.stability.matching import size_of
 from proprotor.stability.steps import Steps, first_steps
 from proprotor.typing import Array
 
 _BLOCK = 64  # steps whose distances stay in the cache
-_OTHER_BLOCK = 1e305  # more than many of the next
-_NEVER = 1e300  # the distance between a root and a state that a point does not have
+_OTHER_BLOCK = 1e305  # its root is more than many of the next
+_NEVER = 1e300  # the square of the distance between a root and a state that a point does not have
 
 
 def steps_by_values(values: Array, block: Array, before: Array, after: Array) -> Steps:
@@ -32,13 +31,18 @@ def steps_by_values(values: Array, block: Array, before: Array, after: Array) ->
 
 def _nearest(first: Array, last: Array, block: Array) -> Array:
     """Return places (steps, states) of the nearest root at the later point, a different one for each root."""
-    apart = size_of(first[:, :, None] - last[:, None, :])
+    real, imaginary = (
+        first.real[:, :, None] - last.real[:, None, :],
+        first.imag[:, :, None] - last.imag[:, None, :],
+    )
+    square = real**2 + imaginary**2
     none, none_later = np.isnan(first)[:, :, None], np.isnan(last)[:, None, :]
     if none.any() or none_later.any():
-        apart = np.where(none & none_later, 0.0, np.where(none | none_later, _NEVER, apart))
-    apart[:, block[:, None] != block] = _OTHER_BLOCK
-    successor: Array = apart.argmin(axis=2)
+        square = np.where(none & none_later, 0.0, np.where(none | none_later, _NEVER, square))
+    if block.any():
+        square[:, block[:, None] != block] = _OTHER_BLOCK
+    successor: Array = square.argmin(axis=2)
     taken_once = (np.sort(successor, axis=1) == np.arange(successor.shape[1])).all(axis=1)
     for step in np.flatnonzero(~taken_once):
-        successor[step] = best_assignment(-apart[step])
+        successor[step] = best_assignment(-np.sqrt(square[step]))
     return successor

@@ -6,6 +6,7 @@ all other points are the same with and without such a design or point in the bat
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,13 +16,14 @@ import numpy as np
 from proprotor.case import Case
 from proprotor.errors import InputError
 from proprotor.files.source_code import check_code
-from proprotor.model.first_order import missing_roots
+from proprotor.model.batches import as_grid, keep_memory
+from proprotor.model.first_order import in_one_axis, missing_roots
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.kinds import flies_free
-from proprotor.stability.modes import decomposition, eigenvalues
+from proprotor.stability.modes import eigenvalues, few_spectra
 from proprotor.study.designs import AIRSPEED
 from proprotor.study.flutter_speeds import put_flutter_speeds
-from proprotor.study.followed_modes import doubted, modes_along
+from proprotor.study.followed_modes import doubted, modes_along, walk
 from proprotor.study.roots import least_stable, ordered, vectors
 from proprotor.study.variables import POINT, VARIABLE, VARIABLES, blank
 from proprotor.typing import Array
@@ -106,6 +108,7 @@ class Analysis:
         """
         if self.code:
             check_code(self.code)
+        keep_memory()
         found = blank(self.quantities, batch.shape, self.states, len(self.dofs))
         if "flutter" in self.quantities:
             self._find_flutter(found, batch)
@@ -118,8 +121,10 @@ class Analysis:
         found["reason"][:], found["flutter_note"][:] = refused[:, None], refused
 
         def models(rows: Array, speeds: Array) -> LinearModel:
-            numbers = {name: values[rows, 0] for name, values in batch.numbers.items()}
-            return self._varied(numbers).linearize(speeds, **self.options)
+            numbers, along = as_grid(
+                {name: values[rows, 0] for name, values in batch.numbers.items()}, speeds
+            )
+            return in_one_axis(self._varied(numbers).linearize(along, **self.options))
 
         if len(rows := np.flatnonzero(refused == "")):
             put_flutter_speeds(found, batch, rows, models, self.states, self.tolerance, flies_free(self.case))
@@ -164,7 +169,10 @@ class Analysis:
         except _BAD_INPUT as error:
             return error
         for name in found.keys() & points.keys():
-            found[name][np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows] = points[name]
+            if points[name].shape == found[name].shape:  # of the whole batch
+                found[name] = points[name]
+            else:
+                found[name][np.ix_(rows, columns) if VARIABLE[name].on == POINT else rows] = points[name]
         return None
 
     def _put_parts(self, found: dict[str, Array], batch: Batch, rows: Array, columns: Array) -> None:
@@ -207,13 +215,15 @@ class Analysis:
         if not {"modes", "vectors"} & set(self.quantities):
             needed = {"eigenvalue", "least_stable"} & set(self.quantities)
             return {"eigenvalue": ordered(eigenvalues(model))} if needed else {}
-        spectrum = decomposition(model)
-        found = {"eigenvalue": ordered(spectrum.values)}
-        if "modes" in self.quantities:
-            found |= modes_along(model, spectrum)
-        if "vectors" in self.quantities:
-            found["vector"] = vectors(model, spectrum)
-        return found
+        shape, found, walks = model.M.shape[:-2], defaultdict(list), []
+        for some, spectrum in few_spectra(model):
+            found["eigenvalue"].append(ordered(spectrum.values))
+            if "vectors" in self.quantities:
+                found["vector"].append(vectors(some, spectrum))
+            if "modes" in self.quantities:
+                walks.append(walk(some, spectrum))
+        joined = {name: np.concatenate(parts) for name, parts in found.items()}
+        return joined | (modes_along(walks, shape[1], model.dofs) if walks else {})
 
     def _with_all_states(self, name: str, found: Array) -> Array:
         """Return an array (…, states) with all states of the study: NaN or "" for states that the batch has not."""

@@ -8,13 +8,13 @@ from proprotor_equations import FIXED_COORDINATES
 from proprotor.model.linear_model import LinearModel
 from proprotor.rotor.motions import name_list
 from proprotor.stability.matching import NOT_TOLD, Spectrum
-from proprotor.stability.names_and_steps import Steps, names_and_steps
+from proprotor.stability.names_and_steps import Steps, Walk, joined, names_and_steps
 from proprotor.study.roots import by_frequency
 from proprotor.typing import Array
 
 
-def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:
-    """Return the variables of the quantity "modes" for a batch of designs and airspeeds.
+def walk(model: LinearModel, spectrum: Spectrum) -> Walk:
+    """Return the points of a few designs at their airspeeds, by name and with the steps from point to point.
 
     Parameters
     ----------
@@ -23,17 +23,33 @@ def modes_along(model: LinearModel, spectrum: Spectrum) -> dict[str, Array]:
     spectrum : Spectrum
         Eigenvalues and vectors of the model.
     """
-    shape = spectrum.values.shape
-    designs, speeds, states = shape
     support = [place for place, name in enumerate(model.dofs) if name not in FIXED_COORDINATES]
-    found, steps = names_and_steps(model, spectrum, support)
-    values = spectrum.values.reshape(-1, states)
+    return names_and_steps(model, spectrum, support)
+
+
+def modes_along(walks: list[Walk], speeds: int, coordinates: tuple[str, ...]) -> dict[str, Array]:
+    """Return the variables of the quantity "modes" for a batch of designs and airspeeds.
+
+    Parameters
+    ----------
+    walks : list of Walk
+        Of all designs of the batch.
+    speeds : int
+        Number of airspeeds.
+    coordinates : tuple of str
+        Of the model.
+    """
+    values, found, steps = joined(walks)
+    shape = (-1, speeds, values.shape[1])
     places, quality = _followed(values, steps, speeds)
     followed, name, share, of_support, main = (
         np.take_along_axis(part, places, -1).reshape(shape) for part in (values, *found)
     )
-    first = np.arange(designs), spectrum.works.argmax(axis=1)
-    names, dofs = (np.array(list(some), dtype=object) for some in ([*name_list(model.dofs), ""], model.dofs))
+    works = np.isfinite(followed).any(axis=-1)
+    first = np.arange(len(works)), works.argmax(axis=1)
+    names, dofs = (
+        np.array(list(some), dtype=object) for some in ([*name_list(coordinates), ""], coordinates)
+    )
     none = np.isnan(followed)
     return {
         "mode_eigenvalue": followed,

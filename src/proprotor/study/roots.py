@@ -27,22 +27,32 @@ def ordered(values: Array) -> Array:
 def vectors(model: LinearModel, spectrum: Spectrum) -> Array:
     """Return the motion of the coordinates (..., n, states) by frequency, the largest component of a mode 1."""
     values, right = spectrum.values, spectrum.right
-    n, held, states = len(model.dofs), held_coordinates(model), values.shape[-1]
+    n, states = len(model.dofs), values.shape[-1]
+    held = held_coordinates(model, states)
     flat, columns = values.reshape(-1, states), right.reshape(-1, states, states)
     found = np.empty((len(flat), n, states), dtype=complex)
     for start in range(0, len(flat), _BLOCK):
         rows = slice(start, start + _BLOCK)
         shapes = coordinate_motion(held, n, flat[rows], columns[rows])
-        shapes = np.where(np.isnan(flat[rows])[:, None, :], np.nan, shapes)
-        found[rows] = _largest_one(np.take_along_axis(shapes, by_frequency(flat[rows])[:, None, :], -1))
+        if (missing := np.isnan(flat[rows])).any():
+            shapes = np.where(missing[:, None, :], np.nan, shapes)
+        _make_largest_one(shapes)
+        found[rows] = np.take_along_axis(shapes, by_frequency(flat[rows])[:, None, :], -1)
     return found.reshape(*values.shape[:-1], n, states)
 
 
-def _largest_one(shapes: Array) -> Array:
-    """Return columns divided by their largest component."""
-    size = np.nan_to_num(shapes.real**2 + shapes.imag**2)
+def _make_largest_one(shapes: Array) -> None:
+    """Divide columns (..., n, states) by their largest component, which is then exactly 1."""
+    size = shapes.real**2 + shapes.imag**2
+    largest = size.argmax(axis=-2)[..., None, :]
+    if np.isnan(
+        np.take_along_axis(size, largest, -2)
+    ).any():  # where a column has NaN, that is its largest component
+        largest = np.nan_to_num(size).argmax(axis=-2)[..., None, :]
     with np.errstate(all="ignore"):
-        return np.asarray(shapes / np.take_along_axis(shapes, size.argmax(axis=-2)[..., None, :], -2))
+        shapes *= 1 / np.take_along_axis(shapes, largest, -2)
+    one = np.take_along_axis(shapes, largest, -2)
+    np.put_along_axis(shapes, largest, np.where(np.isnan(one), np.nan, 1), -2)
 
 
 def least_stable(model: LinearModel, values: Array) -> dict[str, Array]:

@@ -11,8 +11,8 @@ import pytest
 import proprotor as pp
 from proprotor.model import rotor_share
 from proprotor.model.deck_fingerprint import deck_fingerprint
-from proprotor.model.kept import kept
 from proprotor.rotor import section_loads
+from proprotor.rotor.kept import kept
 from proprotor.support.normal_modes import NormalModes
 from proprotor.support.wing_aerodynamics import WingInAirstream
 
