@@ -239,6 +239,24 @@ def test_every_option_that_is_served(options, airspeed, monkeypatch):
     assert_alike(*({name: getattr(m, name) for name in MATRICES} for m in (model, expected)), speed)
 
 
+def test_a_linkage_of_zero_among_others_is_no_linkage_to_rounding():
+    """A design has the bits of every batch that varies the linkage, and to rounding those without a linkage."""
+    case, speeds = pp.load_case("xv15-uncoupled"), np.linspace(60.0, 180.0, 3)
+
+    def model(linkage):
+        rotor = dataclasses.replace(case.rotor, kinematic_pitch_flap_coupling=linkage)
+        return pp.rotor_model(rotor, case.operation, speeds)
+
+    among, alone = model(np.array([[0.0], [0.2], [-0.1]])), model(np.array([[0.0]]))
+    without = model(0.0)
+    for name in MATRICES:
+        assert np.array_equal(getattr(among, name)[0], getattr(alone, name)[0])
+    found, expected = ({name: getattr(m, name) for name in MATRICES} for m in (alone, without))
+    for name in MATRICES:
+        size = np.abs(expected[name]).max(axis=(-2, -1), keepdims=True)
+        assert (np.abs(found[name][0] - expected[name]) <= 1e-12 * size).all(), name
+
+
 def test_published_equations_take_the_readable_functions(monkeypatch):
     case, calls = pp.load_case("xv15-uncoupled"), is_called(monkeypatch)
     assert pp.rotor_model(case.rotor, case.operation, 100.0, equations="published").trim.converged

@@ -59,18 +59,24 @@ def test_a_softer_swashplate_tilt_changes_only_cyclic_pitch(case: pp.Case) -> No
     rotor = case.rotor
     softer = linked(case, cyclic_control_stiffness=0.6 * rotor.control_stiffness)
     ours, theirs = softer.linearize(SPEED), case.linearize(SPEED)
-    assert ours.trim.collective == theirs.trim.collective and ours.trim.coning == theirs.trim.coning
+    for name in (
+        "collective",
+        "coning",
+    ):  # by the plans for all rotors, and by those for rotors without linkages
+        assert getattr(ours.trim, name) == pytest.approx(getattr(theirs.trim, name), abs=ROUNDING)
     changed = ours.K - theirs.K
     places = [ours.dofs.index(name) for name in ("pitch_1c", "pitch_1s")]
     lost = -0.4 * rotor.control_stiffness * rotor.n_blades / 2
     assert np.diag(changed)[places] == pytest.approx(lost, rel=1e-9)
     changed[places, places] = 0
-    assert np.abs(changed).max() == 0
-    assert (ours.M == theirs.M).all() and (ours.C == theirs.C).all()
+    assert np.abs(changed).max() <= ROUNDING * np.abs(theirs.K).max()
+    for name in "MC":
+        own, other = getattr(ours, name), getattr(theirs, name)
+        assert np.abs(own - other).max() <= ROUNDING * np.abs(other).max()
     inputs = ours.B - theirs.B
     assert inputs[places, [1, 2]] == pytest.approx(lost, rel=1e-9)  # the swashplate's cyclic motions
     inputs[places, [1, 2]] = 0
-    assert np.abs(inputs).max() == 0
+    assert np.abs(inputs).max() <= ROUNDING * np.abs(theirs.B).max()
 
 
 def test_equal_stiffness_of_both_is_none_of_its_own(case: pp.Case) -> None:

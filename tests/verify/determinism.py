@@ -49,7 +49,7 @@ _DERIVE = (
 _MATRIX = re.compile(r"^(\w+) : .*\(\.\.\., (segments, )?(\d+), (\d+)\)", re.MULTILINE)
 _GROUP = re.compile(r"^(\w+) : \[SI\] (\d+) numbers", re.MULTILINE)  # of a fused function
 _INTO = re.compile(r"^into : .* the (\d+) results$", re.MULTILINE)  # of a fused function
-_OF_NUMPY = {"cos": np.cos, "sin": np.sin, "sqrt": np.sqrt, "arctan": np.arctan}
+_OF_NUMPY = {"cos": np.cos, "sin": np.sin}
 _MORE = {"speed_of_sound": 1.2}  # what is added to keep the air subsonic
 
 Files = dict[str, str]
@@ -269,7 +269,7 @@ def _called(function: Callable, arguments: Mapping[str, np.ndarray]):
     given: dict[str, object] = {name: wave for name, wave in _OF_NUMPY.items() if name in names}
     if "into" in names:
         (count,) = _INTO.findall(_documented(function))
-        given["into"] = np.full(int(count), np.nan)
+        given["into"] = np.full((int(count), 1), np.nan)
     return function(**given, **arguments)
 
 

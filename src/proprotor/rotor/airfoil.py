@@ -41,7 +41,7 @@ class SectionModel(Protocol):
 
 
 @runtime_checkable
-class HasPoints(Protocol):
+class _HasPoints(Protocol):
     """A section model whose numbers may differ from point to point of a batch, and from station to station."""
 
     @property
@@ -62,11 +62,11 @@ class HasPoints(Protocol):
 _WITH_POINTS: dict[type, bool] = {}
 
 
-def has_points(airfoil: SectionModel) -> TypeGuard[HasPoints]:
-    """Return whether a section model is `HasPoints`, asked once for each class: the question makes its real part."""
+def has_points(airfoil: SectionModel) -> TypeGuard[_HasPoints]:
+    """Return whether a section model has points, asked once for each class: the question makes its real part."""
     kind = type(airfoil)
     if kind not in _WITH_POINTS:
-        _WITH_POINTS[kind] = isinstance(airfoil, HasPoints)
+        _WITH_POINTS[kind] = isinstance(airfoil, _HasPoints)
     return _WITH_POINTS[kind]
 
 
