@@ -53,7 +53,7 @@ OPTIONS = (
 )
 
 
-# What the model does not call: it takes the same from the fused functions, tests/derive/test_equations_alone.py compares.
+# What the model does not call: it takes the same from the fused functions, which tests/derive/test_fused.py compares.
 FOR_USE_ALONE = {("rotor", "matrices")}
 
 
