@@ -19,6 +19,8 @@ from scipy.optimize import brentq
 from scipy.special import hankel2
 
 import proprotor as pp
+from benchmarks.propeller_strips import Lag, Propeller, neutral_damping
+from benchmarks.propeller_strips import theodorsen as theodorsen_of_strips
 from proprotor.model.structural_damping import NeutralDamping
 from proprotor.rotor.motions import HUB
 
@@ -283,6 +285,38 @@ def chart_with_states(root_cutout: float = ROOT_CUTOUT) -> dict[float, NDArray]:
     return {ratio: np.array([neutral_with_states(model, ratio) for model in models]) for ratio in CHART}
 
 
+def chart_of_strips(
+    lag: Lag, root_cutout: float = ROOT_CUTOUT, *, slow_hub: bool = False
+) -> dict[float, NDArray]:
+    """g by strips written down apart, of the same chord and without steady load at any advance ratio."""
+    chord = float(rotor_fitted_with_lag(root_cutout).chord)
+    return {
+        ratio: np.array(
+            [_of_strips(lag, chord, root_cutout, j, ratio, slow_hub) for j in CHART_ADVANCE_RATIOS]
+        )
+        for ratio in CHART
+    }
+
+
+def _of_strips(lag: Lag, chord: float, root_cutout: float, j: float, ratio: float, slow_hub: bool) -> float:
+    strips = Propeller(
+        n_blades=N_BLADES,
+        radius=RADIUS,
+        root_cutout=root_cutout * RADIUS,
+        chord=chord,
+        lift_slope=LIFT_SLOPE,
+        rotor_speed=float(rotor_speed(j)),
+        polar_inertia=POLAR_INERTIA,
+        inertia=PIVOT_INERTIA,
+        distance=PIVOT_DISTANCE,
+        airspeed=AIRSPEED,
+        density=DENSITY,
+    )
+    springs = PIVOT_INERTIA * PITCH_FREQUENCY**2 * np.array([1.0, ratio])
+    near = float(neutral(propeller(j, reported_derivatives(j)), ratio).frequency[0])
+    return neutral_damping(strips, springs, near, lag, slow_hub=slow_hub)
+
+
 def chart_of(rotor_alone: pp.LinearModel) -> dict[float, NDArray]:
     """g at the points of the report's chart."""
     return {ratio: neutral(rotor_alone, ratio).damping[:, 0] for ratio in CHART}
@@ -309,6 +343,10 @@ def print_charts(console: Console) -> None:
     for cutout in (0.15, ROOT_CUTOUT, 0.25):
         charts[f'lift="lagged" from {cutout:g} R, lag of one change a turn'] = chart_with_lag(cutout)
         charts[f'lift="lagged" from {cutout:g} R'] = chart_with_states(cutout)
+        charts[f"strips with C(k) from {cutout:g} R, lag of one change a turn"] = chart_of_strips(
+            theodorsen_of_strips, cutout, slow_hub=True
+        )
+        charts[f"strips with C(k) from {cutout:g} R"] = chart_of_strips(theodorsen_of_strips, cutout)
     for ratio, chart in CHART.items():
         title = f"g of backward whirl at neutral stability, S_ψ/S_θ = {ratio:g}"
         table = Table("J", *(f"{j:g}" for j in CHART_ADVANCE_RATIOS), title=title)

@@ -87,6 +87,12 @@ def misfit(logarithms: Array) -> Array:
     return np.concatenate([cyclic[:, 1] - LAG, collective[:, 1] - CONING])
 
 
+def calibrated() -> Array:
+    """Return the four factors that are calibrated to Bell's first modes."""
+    fit = least_squares(misfit, np.log([3.5, 20.0, 1.7, 0.16]), diff_step=1e-4, ftol=1e-7, max_nfev=12)
+    return np.exp(fit.x)
+
+
 def boundaries(stiffness: list[float]) -> Iterator[str]:
     """Yield the first boundary of the semispan wing, kt, for control stiffnesses in ft lbf/rad."""
     case = pp.load_case("xv15")
@@ -112,8 +118,7 @@ def spreads(found: HingedBlade) -> dict[str, float]:
 def main() -> None:
     """Calibrate the blade and print what follows."""
     console = Console()
-    fit = least_squares(misfit, np.log([3.5, 20.0, 1.7, 0.16]), diff_step=1e-4, ftol=1e-7, max_nfev=12)
-    factors = np.exp(fit.x)
+    factors = calibrated()
     names = ("flatwise", "edgewise", "flatwise in the hub", "edgewise in the hub")
     shown = ", ".join(f"{name} {value:.3g}" for name, value in zip(names, factors, strict=True))
     console.print(f"EI / GJ, calibrated to Bell's first modes: {shown} (of the blade's).")

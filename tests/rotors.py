@@ -29,10 +29,18 @@ class Flight:
         return self.operation.rotor_speed
 
     def model(self, **options):
-        return pp.rotor_model(self.rotor, self.operation, self.airspeed, **options)
+        rotor = self.rotor_for(options)
+        return pp.rotor_model(rotor, self.operation, self.airspeed, **options)
 
     def on(self, support, **options):
-        return pp.Case("random", self.rotor, self.operation, support).linearize(self.airspeed, **options)
+        rotor = self.rotor_for(options)
+        return pp.Case("random", rotor, self.operation, support).linearize(self.airspeed, **options)
+
+    def rotor_for(self, options):
+        """The rotor with one stiffness of its control system where couplings stand for the pitch of all harmonics."""
+        if options.get("pitch") == "coupling":
+            return replace(self.rotor, cyclic_control_stiffness=None)
+        return self.rotor
 
     def with_rotor(self, **fields):
         return replace(self, rotor=replace(self.rotor, **fields))
@@ -110,6 +118,8 @@ def limp_rotors(draw, radius, hinges):
         flap_outboard_fraction=draw(fraction),
         lag_outboard_fraction=draw(fraction),
         pitch_gimbal_coupling=draw(zero_or(between(-0.6, 0.6))),
+        kinematic_pitch_flap_coupling=draw(zero_or(between(-0.4, 0.4))),
+        kinematic_pitch_lag_coupling=draw(zero_or(between(-0.3, 0.3))),
         structural_pitch_offset=draw(zero_or(between(-0.5, 0.5))),
         propeller_moment=draw(st.booleans()),
         chord=draw(chords(radius)),
@@ -127,11 +137,14 @@ def rotors(draw, rotor_speed, radius, *, hinges="anywhere", stiff=False):
     spring_per_rev = between(1.2, 1.6) if stiff else between(0.4, 1.6)
     lag_per_rev = between(1.3, 2.5) if stiff else between(0.4, 2.5)
     gimbal_share = between(0.01, 0.3) if stiff else zero_or(between(0.01, 0.3))
+    control = pitch_inertia * (rotor_speed * draw(between(3.0, 6.0))) ** 2
+    of_tilt = draw(st.none() | between(0.5, 2.0))
     return replace(
         limp,
         flap_stiffness=limp.flap_inertia * (rotor_speed * draw(spring_per_rev)) ** 2,
         lag_stiffness=limp.lag_inertia * (rotor_speed * draw(lag_per_rev)) ** 2,
-        control_stiffness=pitch_inertia * (rotor_speed * draw(between(3.0, 6.0))) ** 2,
+        control_stiffness=control,
+        cyclic_control_stiffness=None if of_tilt is None else of_tilt * control,
         pitch_inertia=pitch_inertia,
         gimbal_stiffness=inertia * rotor_speed**2 * draw(gimbal_share),
         **{name: inertia * rotor_speed * draw(zero_or(between(1e-3, 1e-2))) for name in DAMPERS},

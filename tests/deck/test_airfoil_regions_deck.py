@@ -6,8 +6,12 @@ from click.testing import CliRunner
 
 import proprotor as pp
 from proprotor.commands.main import main
+from proprotor.deck.vary import varied_numbers
+from proprotor.explore.altered_deck import altered_deck
+from proprotor.model import stamp
 from proprotor.model.amounts import amounts
 from proprotor.model.deck_fingerprint import deck_fingerprint
+from proprotor.model.first_order import state_matrix
 from tests.c81_files import as_c81, made_up_tables
 
 HEAD = 'base = "xv15"\n[case]\nname = "regions"\n'
@@ -64,6 +68,88 @@ def test_the_end_of_two_regions_and_the_width_may_vary(deck):
     found, own = batch.linearize(120.0), case.linearize(120.0)
     assert np.abs(found.K[1] - own.K).max() <= 1e-12 * np.abs(own.K).max()
     assert np.abs(found.K[0] - own.K).max() > 1e-6 * np.abs(own.K).max()
+
+
+ENTRY = "rotor.airfoil.lift_slope[2]"
+SPEED = 150.0
+
+
+@pytest.fixture
+def three(deck):
+    return pp.load_case(deck(THREE))
+
+
+def test_entries_of_a_list_are_inputs_from_the_root_outward(three):
+    known = pp.design_inputs(three)
+    slopes = [known[f"rotor.airfoil.lift_slope[{place}]"] for place in (1, 2, 3)]
+    assert [number.si for number in slopes] == [6.1, 5.8, 6.5]
+    assert (slopes[1].written, slopes[1].unit) == ("5.8 1/rad", "1/rad")
+    assert known["rotor.airfoil.zero_lift_angle[1]"].source == "a guess"
+    assert {"rotor.airfoil.region_ends[2]", "rotor.airfoil.moment[3]", "rotor.airfoil.drag"} <= set(known)
+    assert "rotor.airfoil.lift_slope" not in known
+    with pytest.raises(pp.InputError, match=r"did you mean rotor\.airfoil\.lift_slope\[\d\]"):
+        three.vary({"rotor.airfoil.lift_slope": 6.0})
+    with pytest.raises(pp.InputError, match=r"lift_slope\[4\]"):
+        three.vary({"rotor.airfoil.lift_slope[4]": 6.0})
+
+
+@pytest.mark.parametrize(
+    ("path", "values", "written"),
+    [
+        (ENTRY, [5.8, 6.2], "lift_slope = { value = [6.1, 6.2, 6.5]"),
+        ("rotor.airfoil.region_ends[1]", [0.55, 0.5], "region_ends = { value = [0.5, 0.8]"),
+        ("rotor.airfoil.moment[3]", [-0.02, -0.05], "moment = { value = [-0.075, -0.008, -0.05]"),
+    ],
+)
+def test_designs_with_another_entry_are_those_of_decks_with_it(three, deck, path, values, written):
+    """One entry varies, in a batch, and the deck that says the same gives the same matrices."""
+    field = path.rpartition(".")[2].partition("[")[0]
+    lines = [
+        written + line[line.index("]") + 1 :] if line.startswith(field) else line
+        for line in THREE.split("\n")
+    ]
+    other = pp.load_case(deck("\n".join(lines)))
+    batch, one = three.vary({path: values}).linearize(SPEED), other.linearize(SPEED)
+    for name, own in (("K", three.linearize(SPEED).K), ("K", one.K)):
+        place = 0 if own is not one.K else 1
+        assert np.abs(getattr(batch, name)[place] - own).max() <= 1e-11 * np.abs(own).max()
+    stamps = [stamp.of_model(model)["deck"] for model in (batch, three.linearize(SPEED), one)]
+    assert len(set(stamps)) == 3
+    assert np.abs(batch.K[0] - batch.K[1]).max() > 1e-7 * np.abs(one.K).max()
+
+
+@pytest.mark.parametrize("path", [ENTRY, "rotor.airfoil.zero_lift_angle[3]", "rotor.airfoil.region_ends[2]"])
+def test_derivatives_by_an_entry(three, path):
+    """Beside central differences, of the beam mode; exact, by a complex step."""
+    found = three.sensitivity("eigenvalue", airspeed=SPEED, wrt=[path], mode="beam")
+    own, step = float(pp.design_inputs(three)[path].si), 1e-4
+    roots = [
+        three.vary({path: own + sign * step}).linearize(SPEED).modes().eigenvalue.values for sign in (1, -1)
+    ]
+    ahead, behind = (values[np.abs(values - found.eigenvalue.item()).argmin()] for values in roots)
+    assert bool(found.exact.all())
+    assert found.derivative.item() == pytest.approx((ahead - behind) / (2 * step), rel=1e-4)
+
+
+def test_studies_and_cases_that_were_varied_hold_entries(three, tmp_path):
+    varied = three.vary({ENTRY: 6.3, "rotor.precone": 0.03})
+    assert varied_numbers(varied) == {ENTRY: 6.3, "rotor.precone": 0.03}
+    again = three.vary(varied_numbers(varied))
+    assert [part.lift_slope for part in again.rotor.airfoil.airfoils] == [6.1, 6.3, 6.5]
+    designs = pp.study(varied, {ENTRY: [5.9, 6.3]}, SPEED, quantities="eigenvalue", workers=1)
+    expected = np.linalg.eigvals(state_matrix(varied.linearize(SPEED)))
+    for value in designs.eigenvalue.values[1]:
+        assert np.abs(expected - value).min() < 1e-10 * np.abs(expected).max()
+    assert designs[ENTRY].values.tolist() == [5.9, 6.3]
+
+
+def test_the_explorer_writes_the_whole_list(three, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = altered_deck("deck.toml", three, {ENTRY: 6.25, "rotor.airfoil.moment[1]": -0.05})
+    (tmp_path / "explored.toml").write_text(text)
+    case = pp.load_case(tmp_path / "explored.toml")
+    assert [part.lift_slope for part in case.rotor.airfoil.airfoils] == [6.1, 6.25, 6.5]
+    assert [part.moment for part in case.rotor.airfoil.airfoils] == [-0.05, -0.008, -0.02]
 
 
 def test_regions_stay_with_a_variant_that_gives_one_lift_slope(deck):

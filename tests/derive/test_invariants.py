@@ -140,12 +140,21 @@ def test_blades_hinged_at_the_centre_move_as_yoke_and_shaft_move_them(flight):
     """Flap and lag can then undo a gimbal tilt and a turn of the shaft, and no hub inertia makes the mass positive."""
     model = undamped(flight)
     cone, lag = flight.rotor.precone + model.trim.coning, model.trim.lag
-    rise, swing, pitch = np.cos(cone) * np.tan(lag), np.sin(cone), flight.rotor.pitch_gimbal_coupling
-    matrices = Matrices(model, flight.rotor_speed)
+    rise, swing, rotor = np.cos(cone) * np.tan(lag), np.sin(cone), flight.rotor
+    of_flap, of_lag = rotor.kinematic_pitch_flap_coupling, rotor.kinematic_pitch_lag_coupling
+    # Pitch that undoes what the linkages of hinges and gimbal turn the blades by.
+    along, across = rotor.pitch_gimbal_coupling - of_flap, swing * of_lag - rise * of_flap
+    # The model has the matrices of its trim before the last step, of up to 1e-13 rad.
+    after = structure(flight.without_dampers().rotor, flight.rotor_speed, angles_of(model.trim))
+    matrices = Matrices(replace(model, **after), flight.rotor_speed)
     for name in "MC":
-        matrices.assert_cancel(name, azimuth=1, flap_0=swing * np.tan(lag), lag_0=np.cos(cone))
-        matrices.assert_cancel(name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, pitch_1c=pitch)
-        matrices.assert_cancel(name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, pitch_1s=pitch)
+        turned = {"flap_0": swing * np.tan(lag), "lag_0": np.cos(cone)}
+        turned["pitch_0"] = of_flap * turned["flap_0"] + of_lag * turned["lag_0"]
+        matrices.assert_cancel(name, azimuth=1, **turned)
+        pitched = {"pitch_1c": along, "pitch_1s": across}
+        matrices.assert_cancel(name, gimbal_1c=1, flap_1c=-1, flap_1s=-rise, lag_1s=swing, **pitched)
+        pitched = {"pitch_1s": along, "pitch_1c": -across}
+        matrices.assert_cancel(name, gimbal_1s=1, flap_1s=-1, flap_1c=rise, lag_1c=-swing, **pitched)
 
 
 @any_rotor
@@ -205,12 +214,21 @@ def test_a_gimbal_tilted_back_against_the_hub_only_pitches_the_blades(flight):
     free = flight.with_rotor(gimbal_stiffness=0.0, pitch_gimbal_coupling=0.0).without_dampers()
     model, rotor = trimmed(free), free.rotor
     matrices = Matrices(model, free.rotor_speed)
-    held = rotor.n_blades / 2 * (rotor.control_stiffness - rotor.pitch_inertia * free.rotor_speed**2)
+    cyclic = rotor.cyclic_control_stiffness
+    restraint = rotor.control_stiffness if cyclic is None else cyclic
+    turning = rotor.n_blades / 2 * rotor.pitch_inertia * free.rotor_speed**2
+    held = {
+        "pitch": rotor.n_blades / 2 * restraint - turning,
+        "flap": rotor.kinematic_pitch_flap_coupling * turning,
+        "lag": rotor.kinematic_pitch_lag_coupling * turning,
+    }
     for tilt, pitch, across in (
         ({"alpha_x": 1, "gimbal_1s": -1}, "pitch_1c", "gimbal_1c"),
         ({"alpha_y": 1, "gimbal_1c": 1}, "pitch_1s", "gimbal_1s"),
     ):
-        pitched = matrices.along("K", **{pitch: 1}) - matrices.rows(**{pitch: held})
+        part = pitch.removeprefix("pitch")
+        not_felt = matrices.rows(**{f"{angle}{part}": value for angle, value in held.items()})
+        pitched = matrices.along("K", **{pitch: 1}) - not_felt
         torque = matrices.rows(**{across: model.trim.torque / 2})
         matrices.assert_loads_equal("K", matrices.along("K", **tilt), pitched + torque, *tilt, pitch)
 
@@ -244,7 +262,8 @@ def rotating_frequencies(model, rotor_speed):
 @any_rotor
 @given(flights())
 def test_collective_and_cyclic_motions_are_those_of_one_blade(flight):
-    model = undamped(flight, locked=("gimbal",))
+    """Where the swashplate is as stiff in tilt as in heave."""
+    model = undamped(flight.with_rotor(cyclic_control_stiffness=None), locked=("gimbal",))
     one_blade, cyclic = collective_frequencies(model), rotating_frequencies(model, flight.rotor_speed)
     assert np.allclose(one_blade, cyclic, rtol=0, atol=1e-10 * flight.rotor_speed)
 
@@ -360,6 +379,10 @@ REVERSED = (
 MIRROR = np.diag([-1.0 if dof in REVERSED else 1.0 for dof in DOFS])
 
 
+def angles_of(trim):
+    return {name: float(getattr(trim, name)) for name in ("coning", "lag", "elastic_pitch", "collective")}
+
+
 def structure(rotor, rotor_speed, trim):
     """M, C, K without airloads, straight from the generated functions: any sign of the rotor speed."""
     pool = (
@@ -367,7 +390,9 @@ def structure(rotor, rotor_speed, trim):
         | trim
         | {"rotor_speed": rotor_speed}
     )
-    pool["pitch"] = trim["collective"] + trim["elastic_pitch"]
+    linked = rotor.kinematic_pitch_flap_coupling * trim["coning"]
+    linked += rotor.kinematic_pitch_lag_coupling * trim["lag"]
+    pool["pitch"] = trim["collective"] + trim["elastic_pitch"] - linked
     pool["structural_pitch"] = pool["pitch"] + rotor.structural_pitch_offset
     inertia, springs, pitch = equations.inertia, equations.flap_lag_springs, equations.pitch
     for named in (inertia.dependent_inertias, inertia.trim_integrals, springs.effective_stiffness):
@@ -376,11 +401,14 @@ def structure(rotor, rotor_speed, trim):
     damping = evaluate(inertia.gyroscopic, pool) + evaluate(pitch.damping, pool)
     stiffness = evaluate(inertia.centrifugal_stiffness, pool) + evaluate(springs.stiffness, pool)
     stiffness = stiffness + evaluate(pitch.stiffness, pool)
-    multiblade = equations.multiblade
+    multiblade, cyclic = equations.multiblade, rotor.cyclic_control_stiffness
+    pool["cyclic_flap_stiffness_excess"] = 0.0
+    pool["cyclic_control_stiffness_excess"] = 0.0 if cyclic is None else cyclic - rotor.control_stiffness
+    tilted = evaluate(multiblade.cyclic_restraint, pool)
     return {
         "M": evaluate(multiblade.mass, pool, mass),
         "C": evaluate(multiblade.damping, pool, mass, damping),
-        "K": evaluate(multiblade.stiffness, pool, mass, damping, stiffness),
+        "K": evaluate(multiblade.stiffness, pool, mass, damping, stiffness) + tilted,
     }
 
 
@@ -388,6 +416,7 @@ def mirrored(rotor):
     return replace(
         rotor,
         pitch_gimbal_coupling=-rotor.pitch_gimbal_coupling,
+        kinematic_pitch_flap_coupling=-rotor.kinematic_pitch_flap_coupling,  # lag changes sign as pitch does
         structural_pitch_offset=-rotor.structural_pitch_offset,
     )
 
@@ -397,9 +426,7 @@ def mirrored(rotor):
 def test_a_rotor_turning_the_other_way_is_a_mirror_image(flight):
     """Dampers included."""
     model = trimmed(flight, airloads="none")
-    trim = {
-        name: float(getattr(model.trim, name)) for name in ("coning", "lag", "elastic_pitch", "collective")
-    }
+    trim = angles_of(model.trim)
     reflected = {name: value if name == "coning" else -value for name, value in trim.items()}
     forward = structure(flight.rotor, flight.rotor_speed, trim)
     backward = structure(mirrored(flight.rotor), -flight.rotor_speed, reflected)
@@ -592,7 +619,10 @@ def test_a_tilted_rotor_that_flies_along_its_shaft_only_tilts_its_loads(flight, 
 
 def flat_in_vacuum(flight, collective, **options):
     """Neither precone nor coning: nothing bends a flat blade in vacuum."""
-    flat = flight.with_rotor(precone=0.0, propeller_moment=False, pitch_gimbal_coupling=0.0).without_dampers()
+    unlinked = dict.fromkeys(
+        ("pitch_gimbal_coupling", "kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling"), 0.0
+    )
+    flat = flight.with_rotor(precone=0.0, propeller_moment=False, **unlinked).without_dampers()
     operation = replace(flat.operation, density=0.0, trim={"collective": collective})
     return trimmed(replace(flat, operation=operation), airloads="none", pitch="rigid", **options)
 
@@ -651,7 +681,13 @@ IN_OTHER_UNITS = {
     **dict.fromkeys(("blade_first_moment", "flap_first_moment", "lag_first_moment"), KILOGRAM * METRE),
     **dict.fromkeys(("blade_inertia", "flap_inertia", "lag_inertia", "pitch_inertia"), KILOGRAM * METRE**2),
     **dict.fromkeys(
-        ("flap_stiffness", "lag_stiffness", "gimbal_stiffness", "control_stiffness"),
+        (
+            "flap_stiffness",
+            "lag_stiffness",
+            "gimbal_stiffness",
+            "control_stiffness",
+            "cyclic_control_stiffness",
+        ),
         KILOGRAM * METRE**2 / SECOND**2,
     ),
     **dict.fromkeys(
@@ -665,7 +701,7 @@ IN_OTHER_UNITS = {
 
 def converted(part, **instead):
     """A rotor or an operation with its plain numbers in the other units."""
-    given = {name: getattr(part, name) for name in IN_OTHER_UNITS if hasattr(part, name)}
+    given = {name: getattr(part, name) for name in IN_OTHER_UNITS if getattr(part, name, None) is not None}
     return replace(part, **{name: IN_OTHER_UNITS[name] * value for name, value in given.items()}, **instead)
 
 

@@ -12,6 +12,7 @@ import proprotor as pp
 from proprotor.errors import InputError
 from proprotor.model.amount_rules import RULES, doubt_of
 from proprotor.model.amounts import amounts, blade_at_trims, support_modes
+from proprotor.tables.amounts_table import amounts_tables
 
 EXACT = 1e-12  # two ways of the same few operations
 
@@ -138,6 +139,19 @@ def test_frequencies_and_couplings_at_trim_are_those_of_turned_springs(make: Mak
         couplings = [(K_FLAP - K_LAG) * (c * along - s * across), (K_FLAP - K_LAG) * (s * along + c * across)]
         pair = (blade.pitch_flap_coupling, blade.pitch_lag_coupling)
         assert pair == pytest.approx(np.array(couplings) / K_PITCH, rel=1e-9)
+        cyclic = (blade.cyclic_pitch_flap_coupling, blade.cyclic_pitch_lag_coupling)
+        assert cyclic == pair
+
+
+def test_couplings_of_a_swashplate_that_tilts_on_a_stiffness_of_its_own(make: Make) -> None:
+    """K_P of each harmonic times its stiffness is the same torque; only the table of such a rotor has both."""
+    plain, softer = make(), make(rotor__cyclic_control_stiffness=f"{0.4 * K_PITCH!r} N*m/rad")
+    for one, other in zip(blade_at_trims(plain), blade_at_trims(softer), strict=True):
+        assert other.pitch_flap_coupling == one.pitch_flap_coupling
+        assert 0.4 * other.cyclic_pitch_flap_coupling == pytest.approx(one.pitch_flap_coupling, rel=1e-12)
+        assert 0.4 * other.cyclic_pitch_lag_coupling == pytest.approx(one.pitch_lag_coupling, rel=1e-12)
+    heads = [amounts_tables(case)[0][1].columns for case in (plain, softer)]
+    assert heads[1] == (*heads[0], "K_Pβ, cyclic", "K_Pζ, cyclic")
 
 
 def test_the_modes_of_the_support_carry_the_blades_on_request(make: Make) -> None:

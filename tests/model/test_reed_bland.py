@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import proprotor as pp
+from benchmarks import propeller_strips
 from benchmarks import reed_bland as report
 from proprotor.errors import InputError
 from proprotor.model.first_order import state_matrix
@@ -294,6 +295,45 @@ def test_the_lag_at_the_frequencies_of_the_whirl_takes_off_more(with_states):
         assert np.all(with_states[ratio] < slow[ratio])
         assert np.all(np.abs(with_states[ratio][:-1] / chart[:-1] - 1) < 0.09)
     assert 0.15 < 1 - with_states[1.96][-1] / report.CHART[1.96][-1] < 0.2
+
+
+@pytest.mark.parametrize("slow_hub", [True, False])
+def test_strips_written_down_apart_need_the_same_damping(slow_hub):
+    """Without steady load and with Jones' function the states are the strips, to what two shape functions leave."""
+    chord = float(report.rotor_fitted_with_lag().chord)
+    strips = report.chart_of_strips(propeller_strips.jones, slow_hub=slow_hub)
+    for place, j in enumerate(J):
+        r = np.linspace(0.05, 1.0, 96) * report.RADIUS
+        unloaded = replace(report.bladed_rotor(chord), twist=(r, np.arctan(j * report.RADIUS / (np.pi * r))))
+        alone = report.rotor_on_hub(unloaded, j, lift="lagged", airloads="lift-slope")
+        for ratio in RATIOS:
+            if slow_hub:
+                found = report.neutral(report.at_one_per_turn(alone), ratio).damping[0]
+            else:
+                found = report.neutral_with_states(alone, ratio)
+            assert found == pytest.approx(strips[ratio][place], rel=2e-3)
+
+
+def test_strips_without_lag_are_the_quasi_steady_blades():
+    chord = float(report.rotor_fitted_with_lag().chord)
+    strips = report.chart_of_strips(propeller_strips.at_once)
+    for place, j in enumerate(J):
+        r = np.linspace(0.05, 1.0, 400) * report.RADIUS
+        unloaded = replace(report.bladed_rotor(chord), twist=(r, np.arctan(j * report.RADIUS / (np.pi * r))))
+        alone = report.rotor_on_hub(unloaded, j, airloads="lift-slope")
+        for ratio in RATIOS:
+            assert report.neutral(alone, ratio).damping[0] == pytest.approx(strips[ratio][place], rel=1e-4)
+
+
+def test_the_one_point_is_missed_by_strips_with_the_function_itself_too():
+    """What the chart has there is the lag of one change a turn: the frequency of the whirl makes the difference."""
+    whirl, slow = (
+        report.chart_of_strips(propeller_strips.theodorsen, slow_hub=slow_hub) for slow_hub in (False, True)
+    )
+    for ratio, chart in report.CHART.items():
+        assert np.all(np.abs(slow[ratio] / chart - 1) < 0.09)
+        assert np.all(np.abs(whirl[ratio][:-1] / chart[:-1] - 1) < 0.09)
+    assert 0.15 < 1 - whirl[1.96][-1] / report.CHART[1.96][-1] < 0.2
 
 
 @pytest.mark.parametrize("ratio", RATIOS)

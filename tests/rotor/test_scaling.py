@@ -42,7 +42,13 @@ any_rotor = settings(max_examples=15, derandomize=True, deadline=None, phases=[P
 LENGTHS = ("radius", "root_cutout", "flap_hinge_offset", "lag_hinge_offset")
 INERTIAS = ("blade_inertia", "flap_inertia", "lag_inertia", "pitch_inertia")
 FIRST_MOMENTS = ("blade_first_moment", "flap_first_moment", "lag_first_moment")
-SPRINGS = ("flap_stiffness", "lag_stiffness", "gimbal_stiffness", "control_stiffness")
+SPRINGS = (
+    "flap_stiffness",
+    "lag_stiffness",
+    "gimbal_stiffness",
+    "control_stiffness",
+    "cyclic_control_stiffness",
+)
 OF_ONE_BLADE = (
     "blade_mass",
     *FIRST_MOMENTS,
@@ -50,11 +56,17 @@ OF_ONE_BLADE = (
     "flap_stiffness",
     "lag_stiffness",
     "control_stiffness",
+    "cyclic_control_stiffness",
 )
 OF_ONE_BLADE += ("flap_damping", "lag_damping", "pitch_damping")
 
 
 # Models -------------------------------------------------------------------------------------------
+
+
+def times(value, factor):
+    """A number times a factor; None, for a stiffness that is none of its own, stays."""
+    return None if value is None else value * factor
 
 
 class Model:
@@ -74,7 +86,7 @@ class Model:
             **dict.fromkeys(SPRINGS, self.moment),
             **dict.fromkeys(DAMPERS, self.moment * self.time),
         }
-        scaled = {name: getattr(rotor, name) * factor for name, factor in factors.items()}
+        scaled = {name: times(getattr(rotor, name), factor) for name, factor in factors.items()}
         chord, twist = self._along(rotor.chord, self.length), self._along(rotor.twist, 1.0)
         return replace(rotor, **scaled, chord=chord, twist=twist)
 
@@ -104,7 +116,7 @@ class Model:
 
 
 def on_support(flight, support, **options):
-    case = pp.Case("random", flight.rotor, flight.operation, support)
+    case = pp.Case("random", flight.rotor_for(options), flight.operation, support)
     return case.linearize(flight.airspeed, **options)
 
 
@@ -214,7 +226,7 @@ def test_more_blades_that_are_lighter_and_narrower_are_the_same_rotor(flight, se
     share = flight.rotor.n_blades / n_blades
     chord = flight.rotor.chord
     chord = (chord[0], chord[1] * share) if isinstance(chord, tuple) else chord * share
-    fields = {name: getattr(flight.rotor, name) * share for name in OF_ONE_BLADE}
+    fields = {name: times(getattr(flight.rotor, name), share) for name in OF_ONE_BLADE}
     airfoil = replace(flight.rotor.airfoil, moment=flight.rotor.airfoil.moment / share)
     other = flight.with_rotor(n_blades=n_blades, chord=chord, airfoil=airfoil, **fields)
     options = {"airloads": airloads, "section_damping": False}

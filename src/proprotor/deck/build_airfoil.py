@@ -21,7 +21,8 @@ def airfoil_of(given: Mapping[str, Any], table_name: str | list[str]) -> Section
     Parameters
     ----------
     given : mapping
-        SI values by field; a value for each region is a tuple. Other values may be arrays of designs, and complex.
+        SI values by field; a value for each region is a tuple. All but whole tuples may be arrays of designs, and
+        complex.
     table_name : str or list of str
         Title of the table, "" for the first of its file; or a title for each region.
 
@@ -64,5 +65,7 @@ def _key(value: Any) -> Any:
 
 
 def _along_joints(value: Any) -> Any:
-    """Return a number of each joint as an array (n - 1,), or a number of all as an array (..., 1)."""
-    return np.array(value) if isinstance(value, tuple) else np.asarray(value)[..., None]
+    """Return a number of each joint as an array (..., n - 1), or a number of all as an array (..., 1)."""
+    if isinstance(value, tuple):
+        return np.stack(np.broadcast_arrays(*value), axis=-1)
+    return np.asarray(value)[..., None]

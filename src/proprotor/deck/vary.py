@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -16,14 +17,17 @@ from proprotor.model.configuration import Configuration
 from proprotor.units import has_own_unit
 
 _FIXED = (str, int, tuple)  # files, whole numbers and lists, which have no range
+_BY_REGION = "rotor.airfoil."  # in the paths of lists with a number for each region of the span
+_ENTRY = re.compile(r"(.+)\[(\d+)\]")
 
 
 def design_inputs(case: Configuration) -> dict[str, Datum]:
     """Return the numbers of a case's deck that may vary, by path, with value, SI unit, status and source.
 
     A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
-    ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. Distributions along the blade, blade
-    frequencies, files and numbers that follow from other numbers are left out.
+    ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. A list with a number for each region of the
+    span has the paths of its entries from the root outward, ``rotor.airfoil.lift_slope[1]``. Distributions along the
+    blade, blade frequencies, files and numbers that follow from other numbers are left out.
 
     Parameters
     ----------
@@ -43,11 +47,35 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
         raise InputError("case", case.name, "must be made from a deck, whose numbers may then vary")
     return {
         path: number
-        for path, number in case.given.items()
+        for whole, given in case.given.items()
+        for path, number in _entries(whole, given)
         if number.r_over_R is None
         and not isinstance(number.si, _FIXED)
         and not path.startswith("rotor.frequencies.")
     }
+
+
+def _entries(path: str, number: Datum) -> Iterator[tuple[str, Datum]]:
+    """Yield a number with its path, or each entry of a list by region with the path of the entry."""
+    if not isinstance(number.si, tuple) or _BY_REGION not in path:
+        yield path, number
+        return
+    for place, value in enumerate(number.si, start=1):
+        written = value if isinstance(value, str) else _written(np.asarray(value), number.unit)
+        yield f"{path}[{place}]", replace(number, written=written, si=value)
+
+
+def list_of(path: str) -> str:
+    """Return the path of the list by region of which a path is an entry; "" for any other path."""
+    entry = _ENTRY.fullmatch(path)
+    return "" if entry is None else entry[1]
+
+
+def _written(number: Any, unit: str) -> str:
+    """Return a number as a deck has it, or how many there are."""
+    if np.isrealobj(number) and not number.ndim:
+        return f"{number:g} {unit}".strip()
+    return f"{number.size} values"
 
 
 def check_input(path: str, known: Collection[str]) -> None:
@@ -91,9 +119,18 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
     for path, value in values.items():
         check_input(path, known)
         number = _number(path, value, known[path].unit)
-        written = f"{number:g} {known[path].unit}".strip() if np.isrealobj(number) and not number.ndim else ""
-        numbers[path] = replace(known[path], written=written or f"{number.size} values", si=number[()])
+        varied = replace(known[path], written=_written(number, known[path].unit), si=number[()])
+        if (entry := _ENTRY.fullmatch(path)) is None:
+            numbers[path] = varied
+        else:
+            numbers[entry[1]] = _with_entry(numbers[entry[1]], int(entry[2]), varied)
     return assemble(case.deck, numbers, tuple(case.support.names), kind=type(case))
+
+
+def _with_entry(whole: Datum, place: int, varied: Datum) -> Datum:
+    """Return a list by region with another number at one of its places, counted from 1."""
+    values = (*whole.si[: place - 1], varied.si, *whole.si[place:])
+    return replace(whole, written=f"{whole.written}; [{place}] {varied.written}", si=values)
 
 
 def varied_numbers(case: Configuration) -> dict[str, Any]:
@@ -106,8 +143,17 @@ def varied_numbers(case: Configuration) -> dict[str, Any]:
     case : Case
         A case built from a deck.
     """
-    own = numbers_of(case.deck)
-    return {path: number.si for path, number in case.given.items() if not _same(number.si, own[path].si)}
+    own = {
+        path: number.si
+        for whole, given in numbers_of(case.deck).items()
+        for path, number in _entries(whole, given)
+    }
+    return {
+        path: number.si
+        for whole, given in case.given.items()
+        for path, number in _entries(whole, given)
+        if not _same(number.si, own[path])
+    }
 
 
 def _same(one: Any, other: Any) -> bool:

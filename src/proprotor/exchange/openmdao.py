@@ -242,7 +242,8 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
 
     def _flutter_partials(self, case: Case, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
         boundary = self._found.get(self._key(inputs)) or self._boundary(case)
-        numbers = {path: case.given[path] for path in self._paths.values()}
+        known = design_inputs(case)
+        numbers = {path: known[path] for path in self._paths.values()}
         rates = at_boundary(case, boundary, numbers, self._model_options)
         for name, path in self._paths.items():
             own = rates.sel(input=path)

@@ -12,6 +12,7 @@ from proprotor.deck.file import read_tables
 from proprotor.deck.per_revolution import as_one_file
 from proprotor.deck.settings import with_settings
 from proprotor.deck.template import toml
+from proprotor.deck.vary import list_of
 from proprotor.deck.written import PerRevolution
 from proprotor.explore.inputs import slider_input
 from proprotor.rotor.options import CHOICES, default_choice
@@ -19,12 +20,25 @@ from proprotor.rotor.options import CHOICES, default_choice
 
 def _settings_of_values(case: Case, values: Mapping[str, float]) -> dict[str, str]:
     """Return SI values by path as texts for a deck, in the units of the case's own deck."""
-    found = {}
+    found = _lists_by_region(case, {path: value for path, value in values.items() if list_of(path)})
     for path, value in values.items():
+        if list_of(path):
+            continue
         slider = slider_input(case, path)
         number = f"{value / slider.factor:.12g}"
         text = number + ("" if slider.unit.startswith("/") else " " * bool(slider.unit)) + slider.unit
         found[path] = PerRevolution.of(text, slider.factor) if slider.unit == "/rev" else text
+    return found
+
+
+def _lists_by_region(case: Case, values: Mapping[str, float]) -> dict[str, str]:
+    """Return whole lists by region, in SI units, as texts for a deck, of which some entries have other values."""
+    numbers = case.vary(values).given if values else {}
+    found = {}
+    for path in dict.fromkeys(map(list_of, values)):
+        unit = f", unit = {toml(numbers[path].unit)}" if numbers[path].unit else ""
+        entries = ", ".join(f"{float(value):.12g}" for value in numbers[path].si)
+        found[path] = f"{{ value = [{entries}]{unit} }}"
     return found
 
 

@@ -7,6 +7,8 @@ configuration, and the stamp that every result has.
     batches              shapes of batches, their points a few at a time, designs at many airspeeds, memory kept
     quantities           the numbers of rotor, operation and options by the names of the derivation
     lift_lag             the lag of lift, added to the matrices of a rotor
+    theodorsen           lift that lags by Theodorsen's function, at one frequency after the other
+    wing_lift_lag        the lag of a wing's lift, added to a coupled model
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
     tilted_rotor         the rotor alone about a periodic trim, around the turn and averaged
     floquet              Floquet exponents beside the roots of the average
@@ -42,7 +44,7 @@ deferred import goes down: `LinearModel.modes` calls `stability`.
 
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
-from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
@@ -51,6 +53,8 @@ from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair, rotors_on, shares
 from proprotor.model.rotor_model import airload_moments, in_closed_form, rotor_model
 from proprotor.model.side import Side
+from proprotor.model.theodorsen import at_frequencies
+from proprotor.model.wing_lift_lag import with_wing_lag
 
 __all__ = [
     "INPUTS",
@@ -61,6 +65,7 @@ __all__ = [
     "airload_moments",
     "amount_rules",
     "amounts",
+    "at_frequencies",
     "batches",
     "blade_comparison",
     "deck_fingerprint",
@@ -69,6 +74,7 @@ __all__ = [
     "floquet",
     "html",
     "in_closed_form",
+    "lagging_blade",
     "mass_at_rest",
     "mount",
     "mount_pair",
@@ -89,4 +95,5 @@ __all__ = [
     "with_lift_lag",
     "with_mast",
     "with_reasons",
+    "with_wing_lag",
 ]

@@ -25,7 +25,7 @@ from proprotor.model.rotor_model import rotor_model
 from proprotor.model.rotor_share import rotor_share, undamped_modes, without_rotors
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.options import parse_options
-from proprotor.rotor.rotor import MASS_INTEGRALS
+from proprotor.rotor.rotor import MASS_INTEGRALS, Rotor
 from proprotor.rotor.trim import UNKNOWNS, with_trim
 from proprotor.support.airframe import Airframe
 from proprotor.typing import Array
@@ -35,8 +35,9 @@ _FLAT = (*UNKNOWNS, "precone")  # zero for frequencies of an undeflected blade a
 _BESIDE_THE_GIMBAL = ("pitch_gimbal_coupling", "pitch_inertia", "gimbal_damping")
 _GIMBAL = [DOFS.index(name) for name in ("gimbal_1c", "gimbal_1s")]
 _FLAP, _LAG = map(BLADE_COORDINATES.index, ("flap", "lag"))
-_RULED = ("flap frequency", "lag frequency", "K_Pβ", "K_Pζ")
-_FOUND = ("flap_frequency", "lag_frequency", "pitch_flap_coupling", "pitch_lag_coupling")
+_RULED = ("flap frequency", "lag frequency", "K_Pβ", "K_Pζ", "K_Pβ", "K_Pζ")
+_PAIR = ("pitch_flap_coupling", "pitch_lag_coupling")
+_FOUND = ("flap_frequency", "lag_frequency", *_PAIR, *(f"cyclic_{name}" for name in _PAIR))
 _SLOW = 1e-3  # Mach number at which a table of an airfoil gives the slope of the Lock number
 _MASS_UNITS = {"mass": "kg", "first_moment": "kg m", "inertia": "kg m²"}
 
@@ -69,7 +70,8 @@ class BladeAtTrim:
     """A blade at the trim of one airspeed: angles in rad, airspeed in m/s, frequencies per revolution.
 
     The frequencies are those of the uncoupled undeflected blade at zero cone, with the springs of this collective. The
-    couplings K_Pβ = -∂θ/∂β and K_Pζ = -∂θ/∂ζ are NaN for a rotor without control stiffness.
+    couplings K_Pβ = -∂θ/∂β and K_Pζ = -∂θ/∂ζ are NaN for a rotor without control stiffness: those of the collective
+    harmonic, and of the cyclic one, which differ where the swashplate tilts on a stiffness of its own.
     """
 
     airspeed: float
@@ -81,6 +83,8 @@ class BladeAtTrim:
     lag_frequency: float
     pitch_flap_coupling: float
     pitch_lag_coupling: float
+    cyclic_pitch_flap_coupling: float
+    cyclic_pitch_lag_coupling: float
     doubt: str = ""
 
 
@@ -141,12 +145,23 @@ def blade_at_trims(case: Configuration) -> tuple[BladeAtTrim, ...]:
         quantities = model_quantities(rotor, case.operation, options, speed, ())
         flap, lag = _frequencies(quantities, options, state)
         coupled = with_trim(quantities, options, state)
-        pair = evaluate(pitch.couplings, coupled) if rotor.control_stiffness > 0 else (np.nan, np.nan)
-        numbers = [float(number) for number in (flap, lag, *pair)]
-        doubts = (doubt_of(name, value) for name, value in zip(_RULED, numbers, strict=True))
+        numbers = [float(number) for number in (flap, lag, *_couplings_by_harmonic(rotor, coupled))]
+        doubts = dict.fromkeys(doubt_of(name, value) for name, value in zip(_RULED, numbers, strict=True))
         angles = {name: float(state[name]) for name in ("collective", "coning", "lag", "elastic_pitch")}
         given: dict[str, Any] = angles | dict(zip(_FOUND, numbers, strict=True))
         found.append(BladeAtTrim(airspeed=float(speed), doubt="; ".join(filter(None, doubts)), **given))
+    return tuple(found)
+
+
+def _couplings_by_harmonic(rotor: Rotor, quantities: Mapping[str, Any]) -> tuple[float, ...]:
+    """Return K_Pβ and K_Pζ where all blades turn alike, then where the swashplate tilts; NaN without a stiffness."""
+    cyclic = rotor.cyclic_control_stiffness
+    found: list[float] = []
+    for stiffness in (rotor.control_stiffness, rotor.control_stiffness if cyclic is None else cyclic):
+        pair = (np.nan, np.nan)
+        if stiffness > 0:
+            pair = evaluate(pitch.couplings, {**quantities, "control_stiffness": stiffness})
+        found += pair
     return tuple(found)
 
 

@@ -18,6 +18,7 @@ from proprotor.model.pair import mount_pair
 from proprotor.model.provenance import reservations
 from proprotor.model.rotor_model import model_of, rotor_model
 from proprotor.model.side import Side
+from proprotor.model.wing_lift_lag import with_wing_lag
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
@@ -136,7 +137,7 @@ class Configuration:
         Raises
         ------
         InputError
-            As `linearize`; without a shaft angle and a load factor, and for an aircraft whose sides differ.
+            As `linearize`; without a shaft angle and a load factor, and for a free aircraft.
         """
         if not parse_options(self.model_options(options)).is_tilted:
             raise InputError("load_factor", 1, "or shaft_angle must be another than in straight axial flight")
@@ -159,9 +160,25 @@ class Configuration:
         rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self, around=around)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         if isinstance(support, Airframe):
-            return self._pair(rotor_alone, support, airspeed, options)
-        self._check_one_rotor(own)
-        return mount(rotor_alone, support)
+            coupled = self._pair(rotor_alone, support, airspeed, options)
+        else:
+            self._check_one_rotor(own)
+            coupled = mount(rotor_alone, support)
+        return self._with_wing_lag(coupled, str(own.get("lift", "")))
+
+    def _with_wing_lag(self, coupled: LinearModel, lift: str) -> LinearModel:
+        """Return the coupled model with the lag of its wing's lift, where the option asks for it."""
+        assert coupled.origin is not None  # of this case
+        if not coupled.origin.options.wing_lags:
+            return coupled
+        found = self.support.wing_circulation(coupled.airspeed, self.operation.density)
+        if found is not None:
+            return with_wing_lag(coupled, found)
+        if not coupled.origin.options.blades_lag:
+            raise InputError(
+                "lift", lift, "goes with a support whose wing has airloads, [support.wing_aerodynamics]"
+            )
+        return coupled
 
     def model_options(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Return options of the model, completed with the blade frequencies and the drive train of the case.

@@ -37,7 +37,9 @@ def short_fingerprint(content: Any) -> str:
 
 
 def _number(si: Any) -> Any:
-    """Return one number as a Python number, whatever its type was; lists and arrays as they are."""
+    """Return one number as a Python number, whatever its type was, also in a list; arrays as they are."""
+    if isinstance(si, tuple):
+        return tuple(map(_number, si))
     return np.asarray(si).item() if np.ndim(si) == 0 else si
 
 

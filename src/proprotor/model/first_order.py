@@ -55,7 +55,7 @@ def state_matrix(model: LinearModel) -> Array:
 def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
     states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
-    matrix = np.empty((*shape, states, states))
+    matrix = np.empty((*shape, states, states), dtype=np.result_type(model.M, model.C, model.K))
     for rows in few_at_once(shape):
         first_order_at(model, rows, matrix[rows])
     for state, free in lacking_states(model):
@@ -79,7 +79,7 @@ def first_order_at(model: LinearModel, rows: Rows, out: Array | None = None) -> 
     rates = _rates(tuple(held), len(model.dofs))
     mass, damping, stiffness = (at_rows(part, rows, shape) for part in (model.M, model.C, model.K))
     loads = np.concatenate([stiffness.take(held, -1), damping], axis=-1)
-    matrix = np.empty((*loads.shape[:-2], *rates.shape[1:] * 2)) if out is None else out
+    matrix = np.empty((*loads.shape[:-2], *rates.shape[1:] * 2), dtype=loads.dtype) if out is None else out
     matrix[..., : len(held), :] = rates
     np.negative(np.linalg.solve(mass, loads), out=matrix[..., len(held) :, :])
     return matrix

@@ -14,7 +14,7 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
-from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.lift_lag import LaggingBlade, lagging_blade, reactionless_with_lift_lag, with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
@@ -25,11 +25,14 @@ from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import (
+    LAGS_PER_BLADE,
+    LIFT,
     MAST_TWIST,
     ROTOR_SPEED,
     lag_coordinates,
     reactionless_groups,
     reactionless_harmonics,
+    with_lag,
 )
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
@@ -106,7 +109,9 @@ def model_of(
     settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
     apart = reactionless_groups(reactionless) if reactionless else []
-    lagging = lag_coordinates() if choice.lift == "lagged" else ()
+    lagging: tuple[Coordinate, ...] = ()
+    if choice.blades_lag:
+        lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
     coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
     if choice.is_tilted:
         made = _about_periodic_trim(_Tilted(rotor, choice, target, speed, shape, around), sections, settled)
@@ -125,7 +130,7 @@ def model_of(
         else made.airspeed,
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
-        rates=tuple(coordinate.name for coordinate in lagging),
+        rates=tuple(coordinate.name for coordinate in coordinates if coordinate.angle == LIFT),
         apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
         swing=made.swing,
     )
@@ -225,9 +230,13 @@ def _absent(rotor: Rotor) -> list[str]:
 
 def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
     """Refuse a batch, or blades whose motions are all kept, that do not fit into memory."""
-    count = float(len(FIXED_COORDINATES))
+    count, blades = float(len(FIXED_COORDINATES)), 3.0
     if options.reactionless:
-        count += 3 * (float(np.max(rotor.n_blades)) - 3)
+        blades = float(np.max(rotor.n_blades))
+        count += 3 * (blades - 3)
+    if options.blades_lag:
+        count += LAGS_PER_BLADE * blades
+    if options.reactionless:
         check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
     size = points * (_BYTES_PER_POINT + _BYTES_PER_ENTRY * count**2)
     check_memory("airspeed", f"{points} points", size, "their matrices", "take fewer points at once")
@@ -271,12 +280,14 @@ def _matrices(
             found = fused.rotor_matrices(quantities, in_air, len(rows), one)
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
-        if options.lift == "lagged":
-            found = with_lift_lag(found, sections.take(rows), quantities, options)
+        late = None
+        if options.blades_lag:
+            late = lagging_blade(sections.take(rows), quantities, len(rows), options)
+            found = with_lift_lag(found, late, quantities)
         if not options.pitch_is_free:
             found["B"] = _without_pitch_equations(found["K"], found["B"])
         if reactionless is not None:
-            found = _with_reactionless(found, _reactionless_blocks(given, blade, reactionless), n)
+            found = _with_reactionless(found, _reactionless_blocks(given, blade, reactionless, late), n)
     return {
         name: _at_all_points(found.get(name), points, rows, (n, columns))
         for name, columns in (dict.fromkeys("MCK", n) | {"B": len(INPUTS)}).items()
@@ -302,23 +313,25 @@ def _at_all_points(matrix: Array | None, points: int, rows: Array, shape: tuple[
 
 
 def _reactionless_blocks(
-    given: Mapping[str, Any], blade: tuple[Array, ...], n_blades: int
+    given: Mapping[str, Any], blade: tuple[Array, ...], n_blades: int, late: LaggingBlade | None
 ) -> Iterator[dict[str, Array]]:
-    """Yield M, C, K of each of the `reactionless_groups`."""
+    """Yield M, C, K of each of the `reactionless_groups`, with the lag of lift where the blade has one."""
     groups = [("reactionless", {"harmonic": n}) for n in reactionless_harmonics(n_blades)]
     groups += [("differential", {})] * (n_blades % 2 == 0)
     for prefix, more in groups:
-        yield {
-            name: evaluate(getattr(multiblade, f"{prefix}_{kind}"), {**given, **more}, *blade[:count])
+        quantities = {**given, **more}
+        block = {
+            name: evaluate(getattr(multiblade, f"{prefix}_{kind}"), quantities, *blade[:count])
             for count, (name, kind) in enumerate(_KINDS.items(), start=1)
         }
+        yield block if late is None else reactionless_with_lift_lag(block, late, quantities)
 
 
 def _with_reactionless(
     found: Mapping[str, Array], blocks: Iterable[dict[str, Array]], n: int
 ) -> dict[str, Array]:
     """Return matrices with blocks of reactionless coordinates, which couple with no others and have no inputs."""
-    start = len(FIXED_COORDINATES)
+    start = found["M"].shape[-1]
     none, more = (0, 0), (0, n - start)
     whole = {
         name: np.pad(matrix, [none] * (matrix.ndim - 2) + [more, more if name in _KINDS else none])

@@ -127,7 +127,7 @@ def state_space(model: LinearModel) -> StateSpace:
     n, held = len(model.dofs), held_coordinates(model)
     rates = slice(len(held), len(held) + n)
     acceleration_by_input = np.linalg.solve(mass, model.B)
-    inputs = np.zeros((*system.shape[:-1], len(model.inputs)))
+    inputs = np.zeros((*system.shape[:-1], len(model.inputs)), dtype=acceleration_by_input.dtype)
     inputs[..., rates, :] = acceleration_by_input
     displacement = np.pad(np.eye(n)[:, held], ((0, 0), (0, n)))
     rate = np.pad(np.eye(n), ((0, 0), (len(held), 0)))

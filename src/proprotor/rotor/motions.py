@@ -21,8 +21,10 @@ HALVES = ("symmetric", "antisymmetric")  # of the motion of an aircraft with two
 _NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of single coordinates
 _PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
+LIFT = "lift"  # the motion of coordinates whose rates are circulation that lags
 LAGS = ("slow", "fast")  # states of lift that lags
 LAG_SHAPES = 2  # functions of the radius in which lift lags; tests/model/test_lift_lag.py has their error
+LAGS_PER_BLADE = len(LAGS) * LAG_SHAPES
 _LIFT = re.compile(r"(^| )(slow|fast) lift( \d+)?$")  # stems of their coordinates
 
 
@@ -66,13 +68,43 @@ def reactionless_harmonics(n_blades: int) -> range:
 
 def lag_coordinates(shapes: int = LAG_SHAPES) -> tuple[Coordinate, ...]:
     """Return the coordinates whose rates are circulation that lags, in m/s, for a number of functions of the radius."""
+    return _lagging(("0", "1c", "1s"), shapes)
+
+
+def wing_lag_names(symmetry: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of the coordinates whose rates are downwash of a wing that takes effect late, in m/s.
+
+    Parameters
+    ----------
+    symmetry : sequence of str
+        The half of the motion of each function of the span, "" on a single wing.
+    """
+    numbers = [symmetry[: place + 1].count(half) for place, half in enumerate(symmetry)]
+    return tuple(
+        f"{half} {lag} wing lift{f' {number}' if number > 1 else ''}".lstrip()
+        for lag in LAGS
+        for half, number in zip(symmetry, numbers, strict=True)
+    )
+
+
+def with_lag(group: tuple[Coordinate, ...], shapes: int = LAG_SHAPES) -> tuple[Coordinate, ...]:
+    """Return one of the `reactionless_groups` with the coordinates of circulation that lags behind its own."""
+    return (*group, *_lagging(tuple(c.name.partition("_")[2] for c in group if c.angle == "flap"), shapes))
+
+
+def _lagging(parts: tuple[str, ...], shapes: int) -> tuple[Coordinate, ...]:
+    """Return coordinates of circulation by the ends of their names, such as 1c."""
     return tuple(
         Coordinate(
-            f"{lag} lift{f' {shape}' if shape > 1 else ''}_{harmonic}{part}", "lift", harmonic, part, "m"
+            f"{lag} lift{f' {shape}' if shape > 1 else ''}_{part}",
+            LIFT,
+            "N/2" if part == "d" else int(part.rstrip("cs")),
+            part.lstrip("0123456789d"),
+            "m",
         )
         for lag in LAGS
         for shape in range(1, shapes + 1)
-        for harmonic, part in ((0, ""), (1, "c"), (1, "s"))
+        for part in parts
     )
 
 
@@ -118,9 +150,10 @@ def _is_cosine(dof: str) -> bool:
 def _cyclic_names(dof: str) -> tuple[str, ...]:
     """Return the names of the modes of a cyclic motion, by its cosine part."""
     half, own = half_of(dof)
-    if is_lift(own):
-        return (f"{half} cyclic {own.rpartition('_')[0]}".lstrip(),)
     stem, _, part = own.rpartition("_")
+    if is_lift(own):
+        beyond = "" if part == "1c" else f", harmonic {part[:-1]}"
+        return (f"{half} cyclic {stem}{beyond}".lstrip(),)
     motion = stem if part == "1c" else f"{stem} {part[:-1]}"
     regressive, progressive = (f"{half} {way} {motion}".lstrip() for way in ("regressive", "progressive"))
     return regressive, progressive
@@ -183,7 +216,7 @@ def check_distinct(field: str, dofs: tuple[str, ...]) -> None:
 @lru_cache(maxsize=1)
 def _names_of_rotors() -> frozenset[str]:
     """Return the coordinates and modes of rotors with any number of blades, each harmonic written as 2."""
-    reactionless = (coordinate.name for coordinate in reactionless_coordinates(6))
+    reactionless = (coordinate.name for group in reactionless_groups(6) for coordinate in with_lag(group))
     lift = (coordinate.name for coordinate in lag_coordinates())
     dofs = (*FIXED_COORDINATES[len(HUB) :], MAST_TWIST, *lift, *reactionless)
     return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))

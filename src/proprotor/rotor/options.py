@@ -27,7 +27,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "airloads": ("full", "lift-slope", "none"),
     "compressibility": (True, False),
     "section_damping": (None, True, False),
-    "lift": ("quasi-steady", "lagged"),
+    "lift": ("quasi-steady", "lagged", "lagged-blades", "lagged-wing"),
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
     "cyclic": ("none", "level"),
@@ -78,9 +78,10 @@ class Options:
         Quasi-steady damping of turning sections (lift by the incidence at 3/4 chord, and the moment about the quarter
         chord), in the trim too. When not given, the damping is on, but off with equations="published"; True adds the
         damping to these equations. Lift-slope airloads keep the lift of the damping alone.
-    lift : "quasi-steady" or "lagged"
-        Lift of blade sections that follows air and pitch at once, or that their shed vortices hold back, with states of
-        its own (consistent equations with airloads; no reactionless motions). The trim is the same.
+    lift : "quasi-steady", "lagged", "lagged-blades" or "lagged-wing"
+        Lift that follows the motion at once, or that shed vortices hold back, with states of its own: of blades
+        (consistent equations with airloads) and of the wing, if the support has one with airloads; or of one of the
+        two. The trim is the same.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
@@ -150,8 +151,8 @@ class Options:
             raise InputError("drive_train", self.drive_train, "must be a DriveTrain")
         if self.drive_train is not None and self.rotor_speed == "constant":
             raise InputError("drive_train", self.drive_train, 'goes with rotor_speed="windmilling"')
-        if self.lift == "lagged":
-            self._check_lag()
+        if self.blades_lag:
+            self.check_blades_may_lag(self.lift)
         for name in ("shaft_angle", "load_factor"):
             check_finite(name, getattr(self, name))
         if np.any(np.abs(self.shaft_angle) > LARGEST_SHAFT_ANGLE):
@@ -188,14 +189,33 @@ class Options:
         at_angle = np.any(np.not_equal(self.shaft_angle, 0))
         return bool(at_angle or np.any(np.not_equal(self.load_factor, 1)))
 
-    def _check_lag(self) -> None:
-        """Refuse options without equations for the lag of lift."""
+    def check_blades_may_lag(self, lift: str) -> None:
+        """Refuse options without equations for the lag of lift.
+
+        Parameters
+        ----------
+        lift : str
+            What asks for the lag, for the message.
+
+        Raises
+        ------
+        InputError
+            For other equations than the consistent ones, and without airloads.
+        """
         if self.equation_set != EQUATION_SETS["consistent"]:
-            raise InputError("lift", self.lift, 'goes with equations="consistent"')
+            raise InputError("lift", lift, 'goes with equations="consistent"')
         if self.airloads == "none":
-            raise InputError("lift", self.lift, 'goes with airloads="full" or "lift-slope"')
-        if self.reactionless:
-            raise InputError("lift", self.lift, "goes with reactionless=False")
+            raise InputError("lift", lift, 'goes with airloads="full" or "lift-slope"')
+
+    @property
+    def blades_lag(self) -> bool:
+        """Whether the lift of blade sections lags."""
+        return self.lift in ("lagged", "lagged-blades")
+
+    @property
+    def wing_lags(self) -> bool:
+        """Whether the lift of the support's wing lags, if the support has one."""
+        return self.lift in ("lagged", "lagged-wing")
 
     @property
     def equation_set(self) -> EquationSet:

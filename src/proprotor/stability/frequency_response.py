@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from proprotor.errors import InputError, check_known
 from proprotor.model.linear_model import SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
+from proprotor.model.theodorsen import at_frequencies
 from proprotor.needs import check_memory
 from proprotor.rotor.motions import HUB, half_of, is_lift
 from proprotor.stability.modes import doubt_and_failure, leading_dims
@@ -29,6 +30,7 @@ def frequency_response(
     *,
     inputs: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
+    lift: str | None = None,
 ) -> Dataset:
     """Return the steady response to an input of one frequency: output = response × input, both e^{iωt}.
 
@@ -43,6 +45,10 @@ def frequency_response(
         Frequencies of the excitation; not negative.
     inputs, outputs : sequence of str, optional
         Names of inputs and outputs of `StateSpace`; all by default.
+    lift : "theodorsen", optional
+        Let the lift of blades and wing come late by Theodorsen's function C(k) itself, at the frequencies that each
+        section meets, in place of states that follow it closely. For a model of a case with lift at once, whose modes
+        `stable` then speaks of.
 
     Returns
     -------
@@ -56,28 +62,31 @@ def frequency_response(
     Raises
     ------
     InputError
-        For an unknown name, a frequency that is negative or not finite, a model without inputs, or a response that does
-        not fit into memory.
+        For an unknown name, a frequency that is negative or not finite, a model without inputs, a response that does
+        not fit into memory, or a model that `lift` does not go with.
     """
     import xarray  # here, because it takes long to import
 
     omega = _frequencies(frequency)
+    if lift not in (None, "theodorsen"):
+        raise InputError("lift", lift, 'must be "theodorsen", or left out')
+    late = None if lift is None else at_frequencies(model, omega)
     space = model.to_state_space()
     columns, rows = _places(inputs, space.inputs, "inputs"), _places(outputs, space.outputs, "outputs")
     count = space.A[..., 0, 0].size * omega.size
     asked = f"{omega.size} frequencies"
     size = _BYTES_PER_ENTRY * count * len(rows) * len(columns)
     check_memory("frequency", asked, size, "the response", "take fewer, or fewer inputs and outputs")
-    response = _response(space, omega, rows, columns)
+    found = _late_response(late, omega, rows, columns) if late else _response(space, omega, rows, columns)
     leading = leading_dims(model)
     dims = (*leading, "frequency", "output", "input")
     names, moved = [space.outputs[row] for row in rows], [space.inputs[column] for column in columns]
     unit = {"units": "output_unit / input_unit"}
     return xarray.Dataset(
         {
-            "response": (dims, response, unit),
-            "magnitude": (dims, np.abs(response), unit),
-            "phase": (dims, np.angle(response), {"units": "rad"}),
+            "response": (dims, found, unit),
+            "magnitude": (dims, np.abs(found), unit),
+            "phase": (dims, np.angle(found), {"units": "rad"}),
             "stable": (leading, _stable(model)),
             **doubt_and_failure(model, leading),
         },
@@ -108,6 +117,15 @@ def _places(wanted: Sequence[str] | None, known: tuple[str, ...], what: str) -> 
     for name in names:
         check_known(what, name, known, what.removesuffix("s"))
     return [known.index(name) for name in names]
+
+
+def _late_response(models: Iterator[LinearModel], omega: Array, rows: list[int], columns: list[int]) -> Array:
+    """Return the response (..., frequencies, rows, columns) of models that hold at one frequency each."""
+    found = [
+        _response(model.to_state_space(), omega[place : place + 1], rows, columns)
+        for place, model in enumerate(models)
+    ]
+    return np.concatenate(found, axis=-3)
 
 
 def _response(space: StateSpace, omega: Array, rows: list[int], columns: list[int]) -> Array:

@@ -17,7 +17,7 @@ from proprotor_equations import rotor as whole_rotor
 
 from proprotor.errors import InputError
 from proprotor.model.configuration import Configuration
-from proprotor.model.lift_lag import with_lift_lag
+from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import INPUTS, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
@@ -28,9 +28,10 @@ from proprotor.model.quantities import COUPLINGS, couplings, model_quantities
 from proprotor.model.rotor_model import airload_moments, in_closed_form
 from proprotor.model.rotor_share import without_rotors
 from proprotor.model.stamp import of_model
+from proprotor.model.wing_lift_lag import with_wing_lag
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import MAST_TWIST, lag_coordinates
+from proprotor.rotor.motions import MAST_TWIST, lag_coordinates, wing_lag_names
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -117,6 +118,22 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
         name = "load_factor" if np.all(np.equal(choice.shaft_angle, 0)) else "shaft_angle"
         rule = "is not taken apart: the airloads of a periodic trim have no parts of their own"
         raise InputError(name, getattr(choice, name), rule)
+    lift = None
+    if choice.wing_lags:
+        lift = case.support.wing_circulation(model.airspeed, case.operation.density)
+    if lift is None:
+        return _parts(case, model, choice)
+    late = wing_lag_names(lift.symmetry)
+    at_once = model.submodel(tuple(name for name in model.dofs if name not in late))
+    parts, n = _parts(case, at_once, choice), len(model.dofs)
+    found = {name: _Part(*(_padded(matrix, n) for matrix in part)) for name, part in parts.items()}
+    nothing: dict[str, Any] = dict.fromkeys("MCK", np.zeros_like(at_once.M))
+    added = with_wing_lag(replace(at_once, **nothing), lift)
+    return found | {"lag of the wing's lift": _Part(added.M, added.C, added.K)}
+
+
+def _parts(case: Configuration, model: LinearModel, choice: Options) -> dict[str, _Part]:
+    """Return M, C and K of a case by origin, with the lift of the wing at once."""
     rotors = [_Rotor(case.rotor, case.operation, choice, model.trim)]
     if case.left is not None and (left := model.left) is not None and left.origin is not None:
         rotors += [_Rotor(case.left.rotor, case.left.operation, left.origin.options, left.trim)]
@@ -155,7 +172,7 @@ def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dic
         _airloads(BladeSections.of(own.rotor, shape), quantities, own.choice)
     )
     found = {name: _in_fixed_frame(part, quantities) for name, part in blade.items()}
-    if own.choice.lift == "lagged":
+    if own.choice.blades_lag:
         found["lag of lift"] = _lag_of_lift(BladeSections.of(own.rotor, shape), quantities, own.choice, shape)
     return found | _other_parts(quantities, own.choice)
 
@@ -240,7 +257,7 @@ def _lag_of_lift(
     """Return what the lag of lift adds, on the rotor's coordinates and its own."""
     own, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
     nothing = {name: np.zeros((points, own, len(INPUTS) if name == "B" else own)) for name in "MCKB"}
-    found = with_lift_lag(nothing, sections, quantities, choice)
+    found = with_lift_lag(nothing, lagging_blade(sections, quantities, points, choice), quantities)
     return _Part(*(found[name] for name in "MCK"))
 
 
@@ -291,7 +308,7 @@ def _alone(
     name: str, part: _Part, choice: Options, model: LinearModel, shape: tuple[int, ...]
 ) -> LinearModel:
     """Return a part of a rotor as a rotor alone, with the twist of its mast; the drive train with its engine."""
-    lagging = lag_coordinates() if choice.lift == "lagged" else ()
+    lagging = lag_coordinates() if choice.blades_lag else ()
     dofs = (*FIXED_COORDINATES, *(coordinate.name for coordinate in lagging))
     n, points = len(dofs), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {

@@ -15,7 +15,7 @@ from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import HALVES, HUB, half_of
+from proprotor.rotor.motions import HALVES, HUB, LAGS_PER_BLADE, half_of, wing_lag_names
 from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
 from proprotor.study.description import as_attribute, described, with_deck_units
@@ -206,9 +206,13 @@ def _given(case: Case, designs: Designs, options: Mapping[str, Any], path: str) 
 
 def _most_coordinates(case: Case, options: Mapping[str, Any]) -> int:
     """Return the number of coordinates of a model of the case with everything free."""
-    blades = 3 * (int(np.max(case.rotor.n_blades)) - 3) if options.get("reactionless") else 0
-    own = len(FIXED_COORDINATES) - len(HUB) + 1 + blades  # and the twist of the mast
-    return len(case.support.names) + own * (2 if isinstance(case.support, Airframe) else 1)
+    blades = int(np.max(case.rotor.n_blades)) if options.get("reactionless") else 3
+    own = len(FIXED_COORDINATES) - len(HUB) + 1 + 3 * (blades - 3)  # and the twist of the mast
+    choice = parse_options(case.model_options(options))
+    own += LAGS_PER_BLADE * blades * choice.blades_lag
+    lift = case.support.wing if choice.wing_lags else None
+    of_wing = 0 if lift is None else len(wing_lag_names(lift.symmetry))
+    return len(case.support.names) + of_wing + own * (2 if isinstance(case.support, Airframe) else 1)
 
 
 def _model_of_points(case: Case, speeds: Array, options: Mapping[str, Any]) -> LinearModel:

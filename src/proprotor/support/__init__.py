@@ -14,6 +14,7 @@ This room imports `errors`, `typing`, `needs`, `files`, `nastran` and, for the n
     free_airframe      rigid motions and elastic modes of a free aircraft
     aircraft_airloads  airloads of a free aircraft: wing strips and tails
     wing_aerodynamics  airloads of the wing itself, by strips
+    wing_circulation   lift of the wing apart from all else, so that it may come late
     nastran            modes or a reduced structure from a Nastran run
     universal_modes    modes from a universal file
     universal_file     datasets of such a file
@@ -41,6 +42,7 @@ from proprotor.support.normal_modes import (
     rigid_support,
     two_axis_pivot,
 )
+from proprotor.support.wing_circulation import WingCirculation
 
 __all__ = [
     "CARRIES",
@@ -53,6 +55,7 @@ __all__ = [
     "Airframe",
     "NormalModes",
     "StructuralModes",
+    "WingCirculation",
     "aircraft_airloads",
     "aircraft_structure",
     "beam",

@@ -17,11 +17,12 @@ import numpy as np
 
 from proprotor.errors import check_finite
 from proprotor.support.aircraft_structure import HalfAircraft
-from proprotor.support.airframe import Airframe
+from proprotor.support.airframe import SYMMETRIES, Airframe
 from proprotor.support.beam import rigid_motion
 from proprotor.support.free_airframe import FreeAirframe
 from proprotor.support.normal_modes import HUB_AXES
 from proprotor.support.wing_aerodynamics import Strips, WingAerodynamics, beam_strips, strip_positions
+from proprotor.support.wing_circulation import WingLift, of_both_wings
 from proprotor.typing import Array, Numbers
 
 _UP, _OUTBOARD, _YAW, _PITCH = (HUB_AXES.index(axis) for axis in ("x", "y", "alpha_x", "alpha_y"))
@@ -129,7 +130,11 @@ def with_airloads(
     -------
     Airframe
     """
+    lift: WingLift | None = None
     found = [wing.matrices(strips) for strips in (motion.right, motion.left)] if wing else []
+    if wing is not None:
+        halves = tuple(half for half in SYMMETRIES if half in airframe.symmetry or "" in airframe.symmetry)
+        lift = of_both_wings(wing.lift(motion.right), wing.lift(motion.left), halves)
     if horizontal_tail is not None:
         found.append(horizontal_tail.matrices(motion.fuselage))
     if vertical_tail is not None:
@@ -137,7 +142,7 @@ def with_airloads(
     if not found:
         return airframe
     damping, stiffness = (sum(parts[1:], start=parts[0]) / 2 for parts in zip(*found, strict=True))
-    return replace(airframe, airload_damping=damping, airload_stiffness=stiffness)
+    return replace(airframe, airload_damping=damping, airload_stiffness=stiffness, wing=lift)
 
 
 def _strips(half: HalfAircraft, shapes: Array) -> Strips:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.support.normal_modes import NormalModes, in_air
+from proprotor.support.wing_circulation import WingLift
 from proprotor.typing import Array
 
 SYMMETRIES = ("symmetric", "antisymmetric")
@@ -36,6 +37,8 @@ class Airframe(NormalModes):
         Names of the coordinates along which neither structure nor air has stiffness; only their rates are states.
     airload_damping, airload_stiffness : array (..., n, n)
         Parts of the airloads of half the airframe in C per ρV and in K per ρV².
+    wing : WingLift, optional
+        The part of these airloads that is lift of the wing, which may lag; the lift of tails does not.
     refusal : array (...) of str, optional
         Of many designs: the reason for which a design is not physical, "" for others. The matrices of such a design
         are those of some other aircraft, and its points fail with the reason.
@@ -47,6 +50,7 @@ class Airframe(NormalModes):
     rates: tuple[str, ...] = field(kw_only=True, default=())
     airload_damping: ArrayLike = field(kw_only=True, default=0.0)
     airload_stiffness: ArrayLike = field(kw_only=True, default=0.0)
+    wing: WingLift | None = field(kw_only=True, default=None)  # type: ignore[misc]
     refusal: Array | None = field(kw_only=True, default=None)
 
     symmetric = ("mass",)

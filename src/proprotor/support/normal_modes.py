@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, is_choice, list_choices, nowhere_negative, unknown_name
 from proprotor.rotor.motions import check_support_names
+from proprotor.support.wing_circulation import WingCirculation, WingLift
 from proprotor.typing import Array
 
 HUB_AXES = ("x", "y", "z", "alpha_x", "alpha_y", "alpha_z")
@@ -68,6 +69,7 @@ class NormalModes:
     warning: Array | None = None
 
     symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
+    wing: ClassVar[WingLift | None] = None
 
     def __post_init__(self) -> None:
         names = tuple(self.names)
@@ -108,6 +110,22 @@ class NormalModes:
         NormalModes
         """
         return self
+
+    def wing_circulation(self, airspeed: ArrayLike, density: ArrayLike) -> WingCirculation | None:
+        """Return the work of the lift of the support's wing at airspeeds and densities, if it has one with airloads.
+
+        Parameters
+        ----------
+        airspeed : float or array (...)
+            m/s.
+        density : float or array (...)
+            kg/m³.
+
+        Returns
+        -------
+        WingCirculation, or None
+        """
+        return None if self.wing is None else self.wing.at(airspeed, density)
 
     @classmethod
     def from_frequencies(

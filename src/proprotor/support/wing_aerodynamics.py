@@ -6,7 +6,8 @@ quarters of the chord for a thin airfoil, and the lift acts at the aerodynamic c
     w = V α - ẋ_d            dL = ½ ρ V cos Λ  a c w dy            Q = ∫ δx_a dL
 
 with x up, α the nose-up rotation about J, Λ the sweep, and a the lift slope of sections across the elastic axis.
-Left out are steady lift, drag, induced velocity, apparent mass and the lag of unsteady flow.
+Left out are steady lift, drag, induced velocity and apparent mass. The lift may lag: see
+`proprotor.support.wing_circulation`.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from proprotor.errors import InputError, check_finite
 from proprotor.support.beam import section_motions
 from proprotor.support.beam_wing import BeamStructure
 from proprotor.support.normal_modes import HUB_AXES, NormalModes, in_air
+from proprotor.support.wing_circulation import WingLift, span_functions
 from proprotor.typing import Array
 
 _UP, _OUTBOARD, _PITCH = (HUB_AXES.index(axis) for axis in ("x", "y", "alpha_y"))
@@ -74,12 +76,42 @@ class WingAerodynamics:
 
     def matrices(self, strips: Strips) -> tuple[Array, Array]:
         """Return the parts of the airloads in C per ρV and in K per ρV²; both (..., n, n)."""
-        own = {entry.name: np.asarray(getattr(self, entry.name))[..., None, None] for entry in fields(self)}
-        loaded = strips.rise + (own["elastic_axis"] - own["aerodynamic_centre"]) * own["chord"] * strips.pitch
-        washed = strips.rise + (own["elastic_axis"] - own["downwash_point"]) * own["chord"] * strips.pitch
+        forces = self._forces(strips)
+        return forces @ self._behind(strips, "downwash_point"), -forces @ strips.pitch
+
+    def lift(self, strips: Strips) -> WingLift:
+        """Return the lift by functions of the span, of which a part may come late."""
+        functions = span_functions(strips.width)
+        weighed = np.swapaxes(functions, -1, -2) * strips.width[..., None, :]
+        gathered = np.linalg.solve(weighed @ functions, weighed)
+        by_rates = -gathered @ self._behind(strips, "downwash_point")
+        single = ("",) * functions.shape[-1]
+        return WingLift(
+            self._forces(strips) @ functions,
+            by_rates,
+            gathered @ strips.pitch,
+            self.chord,
+            single,
+            *self.matrices(strips),
+        )
+
+    def _forces(self, strips: Strips) -> Array:
+        """Return the work of the lift of each strip per ρV and downwash, (..., n, k)."""
+        own = {
+            name: np.asarray(getattr(self, name))[..., None, None]
+            for name in ("lift_slope", "chord", "sweep")
+        }
         lift = own["lift_slope"] * own["chord"] * np.cos(own["sweep"]) / 2 * strips.width[..., None]
-        forces = np.swapaxes(lift * loaded, -1, -2)
-        return forces @ washed, -forces @ strips.pitch
+        return np.swapaxes(lift * self._behind(strips, "aerodynamic_centre"), -1, -2)
+
+    def _behind(self, strips: Strips, point: str) -> Array:
+        """Return how far a point of the chord rises, (..., k, n)."""
+        ahead, chord = (
+            np.asarray(self.elastic_axis) - np.asarray(getattr(self, point)),
+            np.asarray(self.chord),
+        )
+        found: Array = strips.rise + (ahead * chord)[..., None, None] * strips.pitch
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,10 +129,13 @@ class WingInAirstream(NormalModes):
     ----------
     airload_damping, airload_stiffness : array (..., n, n)
         Parts of the airloads in C per ρV and in K per ρV², from `WingAerodynamics.matrices`.
+    wing : WingLift, optional
+        The part of the airloads that is lift, which may lag.
     """
 
     airload_damping: ArrayLike = field(kw_only=True)
     airload_stiffness: ArrayLike = field(kw_only=True)
+    wing: WingLift | None = field(kw_only=True, default=None)  # type: ignore[misc]
 
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
         """Return the support, with matrices (..., n, n), at airspeeds (m/s) and densities (kg/m³) that broadcast."""
@@ -123,7 +158,9 @@ def in_airstream(support: NormalModes, strips: Strips, aerodynamics: WingAerodyn
         raise InputError("strips", strips.rise.shape[-1], rule)
     damping, stiffness = aerodynamics.matrices(strips)
     own = {entry.name: getattr(support, entry.name) for entry in fields(NormalModes)}
-    return WingInAirstream(**own, airload_damping=damping, airload_stiffness=stiffness)
+    return WingInAirstream(
+        **own, airload_damping=damping, airload_stiffness=stiffness, wing=aerodynamics.lift(strips)
+    )
 
 
 def beam_strips(structure: BeamStructure, shapes: ArrayLike) -> Strips:

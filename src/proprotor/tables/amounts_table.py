@@ -21,6 +21,7 @@ _BLADE = (
     "K_Pβ",
     "K_Pζ",
 )
+_CYCLIC = ("K_Pβ, cyclic", "K_Pζ, cyclic")
 
 
 class AmountsTable(NamedTuple):
@@ -60,7 +61,9 @@ def amounts_tables(case: Configuration) -> tuple[tuple[AmountsTable, ...], tuple
     tables = [AmountsTable("Blade, rotor and air, in SI units", columns, rows, ("what", "unit", "from"))]
     if trims:
         caption = "The blade at trim: uncoupled frequencies at zero cone, and couplings"
-        tables.append(AmountsTable(caption, _BLADE, tuple(map(_trim_row, trims)), ()))
+        apart = case.rotor.cyclic_control_stiffness is not None
+        blades = tuple(_trim_row(one, cyclic=apart) for one in trims)
+        tables.append(AmountsTable(caption, _BLADE + _CYCLIC * apart, blades, ()))
     if modes:
         head = ("mode", "alone, Hz", "/rev", "with the rotor, Hz", "with it, /rev")
         caption = (
@@ -72,11 +75,13 @@ def amounts_tables(case: Configuration) -> tuple[tuple[AmountsTable, ...], tuple
     return tuple(tables), tuple(f"{MARK} {doubt}." for doubt in doubts)
 
 
-def _trim_row(blade: BladeAtTrim) -> tuple[str, ...]:
+def _trim_row(blade: BladeAtTrim, *, cyclic: bool) -> tuple[str, ...]:
     degrees = (f"{math.degrees(angle):.3f}" for angle in (blade.collective, blade.coning, blade.lag))
     frequencies = (f"{ratio:.3f}" for ratio in (blade.flap_frequency, blade.lag_frequency))
-    pair = (blade.pitch_flap_coupling, blade.pitch_lag_coupling)
-    couplings = ("–" if math.isnan(k) else f"{k:.4f}" for k in pair)
+    pairs = [blade.pitch_flap_coupling, blade.pitch_lag_coupling]
+    if cyclic:
+        pairs += [blade.cyclic_pitch_flap_coupling, blade.cyclic_pitch_lag_coupling]
+    couplings = ("–" if math.isnan(k) else f"{k:.4f}" for k in pairs)
     return (marked(f"{blade.airspeed / KNOT:.4g}", blade.doubt), *degrees, *frequencies, *couplings)
 
 
