@@ -150,6 +150,15 @@ def test_a_free_aircraft_is_refused():
         pp.load_case("xv15-aircraft").linearize(150.0, shaft_angle=0.05)
 
 
+def test_a_flutter_speed_is_where_its_mode_has_no_damping():
+    """The search takes derivatives by a complex step through the periodic trim."""
+    angle = np.radians(4)
+    point = CASE.flutter_point("320:360:20kt", shaft_angle=angle)
+    found = CASE.linearize(point.speed, shaft_angle=angle).modes()
+    damping = found.damping_ratio.values[list(found.name.values).index(point.mode)]
+    assert abs(damping) < 1e-8
+
+
 def test_sensitivities_are_exact_at_an_angle():
     options = {"shaft_angle": 0.05}
     found = CASE.sensitivity("damping", ["rotor.precone"], airspeed=150.0, **options)

@@ -125,9 +125,11 @@ class HarmonicBalance:
 
     def advancing_mach(self) -> Array:
         """Return the Mach number (points,) of the blade tips where they advance into the air."""
-        velocity, radius = self.flight.velocity, np.asarray(self.quantities["radius"])
-        across = np.hypot(velocity[:, 0], velocity[:, 1]) + self.quantities["rotor_speed"] * radius
-        return np.asarray(np.hypot(across, velocity[:, 2]) / self.quantities["speed_of_sound"])
+        names = ("rotor_speed", "radius", "speed_of_sound")
+        rotor_speed, radius, sound = (np.real(self.quantities[name]) for name in names)
+        velocity = np.real(self.flight.velocity)
+        across = np.hypot(velocity[:, 0], velocity[:, 1]) + rotor_speed * radius
+        return np.asarray(np.hypot(across, velocity[:, 2]) / sound)
 
     def _held(self, motion: Motion, rotor_speed: Array) -> tuple[Array, Array]:
         """Return slopes and loads of control system, pitch damper and gimbal."""
@@ -279,7 +281,7 @@ def _reasons(balance: HarmonicBalance, converged: Array) -> Array:
     reason = np.where(converged, "", _NOT_FOUND).astype(object)
     options, airfoil = balance.options, balance.sections.airfoil
     if options.compressibility and not airfoil.contains_compressibility:
-        mach = np.real(balance.advancing_mach())
+        mach = balance.advancing_mach()
         for place in np.flatnonzero(mach >= 1):
             reason[place] = (
                 f"tip Mach number {mach[place]:.3f} where the blade advances: Prandtl-Glauert needs it below 1"
