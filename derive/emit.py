@@ -30,10 +30,10 @@ from derive.files import write_whole
 from derive.function import Function
 from derive.fused import FusedFunction, functions_of_rotor
 from derive.fused_trim import functions_of_trim
-from derive.plain import ALL_ROTORS, PLAIN_ROTORS, Catalogue
+from derive.plain import ALL_ROTORS, ON_AXIS, PLAIN_ROTORS, Catalogue
 from derive.plan import print_line
 from derive.published import DROPPED_TERMS
-from derive.rotor import OF_SEGMENTS, OPTIONAL, Assembly, Call
+from derive.rotor import OF_SEGMENTS, OFFSETS, OPTIONAL, Assembly, Call
 from derive.symbols import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -302,22 +302,28 @@ def _put(code: str, place: int) -> str:
 
 _FUSED = {
     "plain": ("Plain rotors, without linkages and drive train, as plans of few operations", PLAIN_ROTORS),
-    "general": ("All rotors as plans of few operations", ALL_ROTORS),
+    "general": ("Rotors with linkages and drive train as plans of few operations", ON_AXIS),
+    "offset": ("Rotors with something beside the pitch axis as plans of few operations", ALL_ROTORS),
 }
 
 
 def render_fused(module: str) -> str:
-    """Text of a module of fused functions; functions that are those of plain rotors are taken from these."""
+    """Text of a module of fused functions; those that an earlier module has are taken from there."""
     title, rotors = _FUSED[module]
-    functions, plain = (_fused_functions(kind) for kind in (rotors, PLAIN_ROTORS))
-    shared = [] if rotors is PLAIN_ROTORS else [one for one in functions if one in plain]
+    functions = _fused_functions(rotors)
+    shared: dict[str, list[FusedFunction]] = {}
+    for earlier, (_, others) in itertools.takewhile(lambda entry: entry[0] != module, _FUSED.items()):
+        known = [one for found in shared.values() for one in found]
+        same = [one for one in functions if one in _fused_functions(others) and one not in known]
+        shared |= {earlier: same} if same else {}
+    taken = [one for found in shared.values() for one in found]
     given = {
         "title": title,
-        "functions": [_describe_fused(function) for function in functions if function not in shared],
-        "shared": _names_of(shared),
+        "functions": [_describe_fused(function) for function in functions if function not in taken],
+        "shared": {earlier: _names_of(found) for earlier, found in shared.items()},
         "names": _names_of(functions),
-        "takes_array": any(function.into for function in functions if function not in shared),
-        "absent": [symbol.name for symbol in QUANTITIES if symbol in rotors.absent],
+        "takes_array": any(function.into for function in functions if function not in taken),
+        "absent": [symbol.name for symbol in QUANTITIES if symbol in rotors.absent - OFFSETS],
     }
     return _rendered("fused.py.jinja", f"fused/{module}.py", **given)
 

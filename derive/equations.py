@@ -21,6 +21,7 @@ from derive import (
     lift_slope,
     moving,
     multiblade,
+    offset_mass,
     pitch,
     rotor,
     section,
@@ -73,6 +74,8 @@ FREQUENCIES = f"{PAPER}, nomenclature: flap and lag frequency"
 REFERENCE_LINE = "the blade's reference line with precone, coning and lag, Eq. 2"
 STRIP = "strip theory on a straight segment"
 STRIP_THEORY = "quasi-steady strip theory, as NASA TN D-7677"
+BESIDE_LINE = "mass beside the pitch axis, which AIAA-2002-1604 has not; positions as Eqs. 2-11"
+BESIDE = f"{STRIP_THEORY}, at an aerodynamic centre beside the pitch axis"
 LATE = "strip theory whose circulation lags by Jones' approximation of Wagner's function, NACA Report 681"
 CLOSED = (
     "u_T = Omega r and u_P = V, constant chord, no compressibility, as NASA TN D-7677; valid down to V = 0"
@@ -106,6 +109,7 @@ OF_ROTOR = f"{PAPER}, Eqs. 4-17 and 32-34"
 
 BLADE, ROWS, UNKNOWNS = kin.COORDINATES, trim.STEADY_ROWS, trim.UNKNOWNS
 LOADS, STIFFNESS = section.SECTION_LOADS.values(), flap_lag_springs.STIFFNESS.values()
+CIRCULATION = [symbol for symbol, _ in lift_lag.change_of_circulation()] + [lift_lag.moment_of_circulation]
 MOMENTS, MOTIONS = airloads.MOMENTS.values(), names(SEGMENT_MOTIONS)
 M, MC, MCK, GUSTS = ("mass",), ("mass", "damping"), ("mass", "damping", "stiffness"), ("gusts",)
 
@@ -124,6 +128,13 @@ INERTIA = (
     blade_matrix("gyroscopic", inertia.gyroscopic, 1, drops=True),
     blade_matrix("centrifugal_stiffness", inertia.centrifugal_stiffness, 0, drops=True),
 )
+OFFSET_MASS = (
+    values("trim_integrals", offset_mass.trim_integrals, BESIDE_LINE),
+    blade_matrix("mass", offset_mass.mass, 2),
+    blade_matrix("gyroscopic", offset_mass.gyroscopic, 1),
+    blade_matrix("centrifugal_stiffness", offset_mass.centrifugal_stiffness, 0),
+    values("couplings", offset_mass.couplings, BESIDE_LINE),
+)
 SPRINGS = (
     values("effective_stiffness", flap_lag_springs.effective_stiffness, f"{PAPER}, Eqs. 18-31", STIFFNESS),
     values("stiffness_of_frequencies", flap_lag_springs.stiffness_of_frequencies, FREQUENCIES),
@@ -141,6 +152,8 @@ SECTION = (
     values("forces", section.forces, STRIP_THEORY, LOADS),
     values("pitching_moment", section.pitching_moment, STRIP_THEORY, LOADS),
     values("steady_forces", section.steady_forces, STRIP_THEORY, LOADS),
+    values("air_beside_axis", section.air_beside_axis, BESIDE),
+    values("about_axis", section.about_axis, BESIDE),
 )
 AIRLOADS = (
     loads_matrix("load_derivatives", section.load_derivative, f"{STRIP}, as NASA TN D-7677", MOTIONS),
@@ -161,6 +174,7 @@ AIRLOADS = (
 )
 LIFT_LAG = (
     values("change_of_circulation", lift_lag.change_of_circulation, LATE),
+    values("change_beside_axis", lift_lag.change_beside_axis, f"{LATE}, beside the pitch axis", CIRCULATION),
     circulation_matrix("change", lift_lag.change, LATE),
     circulation_loads("load", lift_lag.load, LATE),
     product("change_by_rates", "Change of a blade's circulation per rate.", lift_lag.products, LATE),
@@ -178,6 +192,8 @@ TRIM = (
     column("residual", trim.residual, STEADY, ROWS, ROW_EQUATION),
     column("precone_load", trim.precone_load, STEADY, trim.HINGED, ROW_EQUATION),
     work_matrix("jacobian", trim.jacobian, SLOPE, ROWS, UNKNOWNS, ROW_EQUATION),
+    column("offset_residual", offset_mass.steady, BESIDE_LINE, ROWS, ROW_EQUATION),
+    work_matrix("offset_jacobian", offset_mass.steady_slope, BESIDE_LINE, ROWS, UNKNOWNS, ROW_EQUATION),
     virtual_motion(ROWS),
     motion_matrix("displacement_motion", trim.displacement_motion, VELOCITIES, UNKNOWNS),
     work_matrix("geometric_stiffness", trim.geometric_stiffness, STEADY_LOADS, ROWS, UNKNOWNS),
@@ -247,6 +263,7 @@ STEPS = {
     for step in (
         Step("coordinates", "Coordinates, loads and motions", COORDINATES, "coordinates.py.jinja"),
         Step("inertia", "Inertia of one blade in rotating axes", INERTIA),
+        Step("offset_mass", "Mass beside the pitch axis of one blade in rotating axes", OFFSET_MASS),
         Step("flap_lag_springs", "Flap-lag springs of one blade, which turn with its pitch", SPRINGS),
         Step("pitch", "Blade pitch, control system, dampers and gimbal restraint", PITCH),
         Step("section", "Loads of a blade section", SECTION),

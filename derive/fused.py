@@ -124,7 +124,7 @@ def _air(rotors: Catalogue, term: Code) -> dict[Place, sp.Expr]:
         last = matrices[-1].name
         entries = _geometric(rotors)[1] if last == "geometric_stiffness" else _work_entries(rotors, last)
         parts.append({place: factor * value for place, value in entries.items()})
-    return _sum(parts)
+    return sum_of(parts)
 
 
 def _work_entries(rotors: Catalogue, motion: str) -> dict[Place, sp.Expr]:
@@ -154,12 +154,12 @@ def _blade(rotors: Catalogue) -> tuple[list[tuple[sp.Symbol, sp.Expr]], Blade, B
         functions = [rotors.of(term.function) for term in line.terms if isinstance(term, Call)]
         plain = [function for function in functions if not isinstance(function, Assembly)]
         steps += [step for function in plain for step in function.steps]
-        blade[line.result] = _sum(entries_of(function) for function in plain)
-        air[line.result] = _sum(_air(rotors, term) for term in line.terms if isinstance(term, Code))
+        blade[line.result] = sum_of(entries_of(function) for function in plain)
+        air[line.result] = sum_of(_air(rotors, term) for term in line.terms if isinstance(term, Code))
     return steps, blade, air
 
 
-def _sum(parts: Iterable[Mapping[Place, sp.Expr]]) -> dict[Place, sp.Expr]:
+def sum_of(parts: Iterable[Mapping[Place, sp.Expr]]) -> dict[Place, sp.Expr]:
     """Add matrices entry by entry."""
     total: dict[Place, sp.Expr] = {}
     for part in parts:
@@ -189,7 +189,7 @@ def _fixed_frame(rotors: Catalogue, blade: Blade, of_blades: bool = False) -> di
             matrices[line.result] = Matrix(left.rows, left.columns + right.columns, both)
             continue
         functions = [rotors.of(term.function) for term in line.terms if isinstance(term, Call)]
-        total = _sum(
+        total = sum_of(
             entries_of(function) for function in functions if function.blade_matrices or not of_blades
         )
         total = {place: value.xreplace(entries) for place, value in total.items()}

@@ -17,7 +17,7 @@ import sympy as sp
 from derive import airloads, lift_slope, section
 from derive import symbols as s
 from derive.coordinates import SEGMENT_LOADS, SEGMENT_MOTIONS, names
-from derive.fused import FusedFunction, Group, arguments, named_values
+from derive.fused import FusedFunction, Group, arguments, named_values, sum_of
 from derive.plain import Catalogue, entries_of
 from derive.plan import Matrix, Place, Steps, plan, without_other_names
 from derive.trim import HINGED, STEADY_ROWS
@@ -48,7 +48,7 @@ def line(rotors: Catalogue) -> FusedFunction:
 
 def section_loads(rotors: Catalogue) -> FusedFunction:
     """Loads of a section with a straight lift line per unit span, their derivatives, and two numbers for doubts."""
-    steps, _ = without_other_names(rotors.steps(_steps_of_section()))
+    steps, _ = without_other_names(rotors.steps(_steps_of_section(rotors)))
     known = {symbol for symbol, _ in steps}
     wanted = [symbol.name for symbol in section.SECTION_LOADS.values() if symbol in known]
     wanted += [section.lift_incidence.name, section.mach.name]
@@ -56,8 +56,22 @@ def section_loads(rotors: Catalogue) -> FusedFunction:
     return FusedFunction("section_loads", _summary(section_loads), made, arguments(made, steps), into=True)
 
 
-def _steps_of_section() -> list[tuple[sp.Symbol, sp.Expr]]:
-    """Return the steps to the loads of a section; powers of the chord have effective values of their own.
+def _steps_of_section(rotors: Catalogue) -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Return the steps to the loads of a section about its pitch axis, whose aerodynamic centre may lie beside it."""
+    if section.center_along in rotors.absent:
+        return _steps_to_center(section.air_at_section())
+    about = {
+        symbol: value for symbol, value in section.about_axis().items() if value != section.AT_CENTER[symbol]
+    }
+    at_center = {symbol: section.AT_CENTER[symbol] for symbol in about}
+    alike = {center: symbol for symbol, center in section.AT_CENTER.items() if symbol not in about}
+    air = section.air_beside_axis()[2:]  # the place of the centre is given
+    own = [(at_center.get(symbol, symbol), value) for symbol, value in _steps_to_center(air)]
+    return [*own, *_replaced(list(about.items()), alike)]
+
+
+def _steps_to_center(air: Steps) -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Return the steps to the loads of an aerodynamic centre; powers of the chord have effective values of their own.
 
     The derivative g' of the Prandtl-Glauert factor comes as the Mach number times g'/g, which is g² - 1.
     """
@@ -74,7 +88,7 @@ def _steps_of_section() -> list[tuple[sp.Symbol, sp.Expr]]:
     by_mach = {section.FORCE_COEFFICIENT[force, "mach"] for force in ("chordwise", "normal")}
     forces = _replaced(section.forces(), given | {_DAMPING: _DAMPING * square_ratio})
     return [
-        *_replaced(section.air_at_section(), {_DAMPING: _DAMPING * square_ratio}),
+        *_replaced(air, {_DAMPING: _DAMPING * square_ratio}),
         section.prandtl_glauert()[0],
         (growth, factor**2 - 1),
         (lift, factor * lift_slope.lift_slope * (section.lift_incidence - zero_lift_angle)),
@@ -157,10 +171,13 @@ def _loads_of_motion(rotors: Catalogue) -> tuple[list[tuple[sp.Symbol, sp.Expr]]
 
 def balance(rotors: Catalogue) -> FusedFunction:
     """Steady balance of one blade without airloads, and its change with coning, lag, elastic pitch and collective."""
-    residual, jacobian = rotors.function("trim", "residual"), rotors.function("trim", "jacobian")
+    residual, slopes = (
+        sum_of(rotors.entries("trim", name) for name in (own, f"offset_{own}"))
+        for own in ("residual", "jacobian")
+    )
     matrices = {
-        "residual": _matrix(("trim",), entries_of(residual)),
-        "slopes": _matrix(jacobian.columns, entries_of(jacobian)),
+        "residual": _matrix(("trim",), residual),
+        "slopes": _matrix(rotors.function("trim", "jacobian").columns, slopes),
     }
     made = plan([], matrices)
     return FusedFunction("balance", _summary(balance), made, arguments(made, []))

@@ -55,12 +55,25 @@ FORCES = {
     )
     for load, latex, meaning in (("fx", "f_x", "force along i'"), ("fn", "f_n", "force along n"))
 }
+moment_of_circulation = s.quantity(
+    "m_circulation", r"m{}_{,w}", "N s/m", "moment about d, nose up, per unit span and U c_l"
+)
+CHANGES_AT_CENTER = {
+    symbol: s.quantity(
+        f"{symbol.name}_at_center",
+        f"{s.QUANTITIES[symbol].latex}{{}}_{{|a}}",
+        s.QUANTITIES[symbol].unit,
+        f"{s.QUANTITIES[symbol].meaning}, of the aerodynamic centre",
+    )
+    for symbol in CHANGES.values()
+}
 
 
 def _moment_unit(unit: str, power: int) -> str:
     """Return the unit of an integral over the radius of r^power times a quantity of a section."""
-    if unit == "N s/m^2":
-        return ("N s/m", "N s")[power]
+    forces = ("N s/m^2", "N s/m", "N s")
+    if unit in forces:
+        return forces[forces.index(unit) + power + 1]
     lengths, _, denominator = unit.removeprefix("m^").partition("/")
     return f"m^{int(lengths) + power + 1}/{denominator}"
 
@@ -74,7 +87,7 @@ MOMENTS = {
     )
     for powers, symbols in (
         ((0, 1), (CHANGES["ut"], CHANGES["up"], *FORCES.values())),
-        ((0,), (CHANGES["theta"], CHANGES["spin"])),
+        ((0,), (CHANGES["theta"], CHANGES["spin"], moment_of_circulation)),
     )
     for symbol in symbols
     for power in powers
@@ -102,6 +115,21 @@ def change_of_circulation() -> list[tuple[sp.Symbol, sp.Expr]]:
     ]
 
 
+def change_beside_axis() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Weighed change of a section's circulation, its force and its moment, where its centre lies beside the axis."""
+    at_center = change_of_circulation()
+    along, below = section.center_along, section.center_below
+    return [
+        *((CHANGES_AT_CENTER.get(symbol, symbol), value) for symbol, value in at_center),
+        *((symbol, section.along_argument(name, _changes_at_center)) for name, symbol in CHANGES.items()),
+        (moment_of_circulation, -along * FORCES["fn"] - below * FORCES["fx"]),
+    ]
+
+
+def _changes_at_center(argument: str) -> sp.Expr:
+    return CHANGES_AT_CENTER[CHANGES[argument]] if argument in CHANGES else sp.Integer(0)
+
+
 def change(_: str, motion: str) -> sp.Expr:
     """Change of a segment's circulation in one shape function, per unit of the motions of the segment."""
     of = MOTION[motion]
@@ -113,9 +141,8 @@ def change(_: str, motion: str) -> sp.Expr:
 def load(row: str, _: str) -> sp.Expr:
     """Generalised loads of a segment per unit of U c_l in one shape function."""
     of = LOAD[row]
-    if of.section_load not in FORCES:
-        return sp.Integer(0)
-    return MOMENTS[FORCES[of.section_load].name, of.power]
+    made = FORCES | {"m": moment_of_circulation}
+    return MOMENTS[made[of.section_load].name, of.power] if of.section_load in made else sp.Integer(0)
 
 
 @functools.cache

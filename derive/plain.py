@@ -1,6 +1,7 @@
-"""The functions of the catalogue as fused functions take them: for all rotors, or for plain rotors.
+"""The functions of the catalogue as fused functions take them: for all rotors, or for rotors that lack something.
 
-A plain rotor has nothing of `OPTIONAL` of derive/rotor.py: no linkages, no drive train. In its functions these
+A plain rotor has nothing of `OPTIONAL` of derive/rotor.py: no linkages, no drive train, nothing beside its pitch axes.
+Most other rotors have at least nothing beside the axes, none of `OFFSETS`. In the functions of such rotors these
 quantities are zero from the start, so that a plan has no operation for them.
 """
 
@@ -15,7 +16,7 @@ import sympy as sp
 from derive.equations import consistent_functions
 from derive.function import Function
 from derive.plan import Place, Steps
-from derive.rotor import OPTIONAL
+from derive.rotor import OFFSETS, OPTIONAL
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Catalogue:
 
     absent: frozenset[sp.Symbol] = frozenset()
 
-    @functools.cache  # noqa: B019  # one record for plain rotors and one for all
+    @functools.cache  # noqa: B019  # a few records in all
     def function(self, module: str, name: str) -> Function:
         """Return a function by its module and name."""
         return self.of(next(function for function in consistent_functions(module) if function.name == name))
@@ -50,7 +51,7 @@ class Catalogue:
         return [(symbol, sp.sympify(value).xreplace(zero)) for symbol, value in steps]
 
 
-ALL_ROTORS, PLAIN_ROTORS = Catalogue(), Catalogue(OPTIONAL)
+ALL_ROTORS, ON_AXIS, PLAIN_ROTORS = Catalogue(), Catalogue(OFFSETS), Catalogue(OPTIONAL)
 
 
 def entries_of(function: Function) -> dict[Place, sp.Expr]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from derive import airloads, flap_lag_springs, pitch
+from derive import airloads, flap_lag_springs, offset_mass, pitch, section
 from derive import kinematics as kin
 from derive import symbols as s
 from derive.function import Function
@@ -20,19 +20,28 @@ from derive.symbols import QUANTITIES
 # Of one segment of the blade; everything else holds for the whole blade.
 OF_SEGMENTS = frozenset({kin.beyond_flap_hinge, kin.beyond_lag_hinge, *airloads.MOMENTS.values()})
 
-# What many rotors do not have; zero where it is not given.
-OPTIONAL = frozenset(
+# What blades have whose masses or aerodynamic centres lie beside the pitch axis; zero on the axis.
+OFFSETS = frozenset(
     {
-        *s.HINGE_LINKAGES,
-        s.pitch_flap_coupling,
-        s.pitch_lag_coupling,
-        s.drive_inertia,
-        s.drive_damping,
-        s.shaft_stiffness,
-        flap_lag_springs.cyclic_flap_stiffness_excess,
-        pitch.cyclic_control_stiffness_excess,
+        *offset_mass.DATA,
+        *offset_mass.INTEGRALS.values(),
+        section.center_along,
+        section.center_below,
+        *(airloads.MOMENTS["fd_spin", power] for power in airloads.POWERS),
     }
 )
+
+# What many rotors do not have; zero where it is not given.
+OPTIONAL = OFFSETS | {
+    *s.HINGE_LINKAGES,
+    s.pitch_flap_coupling,
+    s.pitch_lag_coupling,
+    s.drive_inertia,
+    s.drive_damping,
+    s.shaft_stiffness,
+    flap_lag_springs.cyclic_flap_stiffness_excess,
+    pitch.cyclic_control_stiffness_excess,
+}
 
 
 @dataclass(frozen=True)
@@ -140,11 +149,13 @@ BLADE_MATRICES = Recipe(
     "Mass, damping and stiffness of one blade in rotating axes with its airloads, and loads of gusts on it.",
     {
         "integrals": ("inertia.trim_integrals",),
+        "beside_axis": ("offset_mass.trim_integrals",),
         "air": ("rotor.blade_airloads",),
-        "mass": ("inertia.mass", "pitch.mass"),
-        "damping": ("inertia.gyroscopic", "pitch.damping", Code("air.damping")),
+        "mass": ("inertia.mass", "offset_mass.mass", "pitch.mass"),
+        "damping": ("inertia.gyroscopic", "offset_mass.gyroscopic", "pitch.damping", Code("air.damping")),
         "stiffness": (
             "inertia.centrifugal_stiffness",
+            "offset_mass.centrifugal_stiffness",
             "pitch.stiffness",
             "flap_lag_springs.stiffness",
             Code("air.stiffness"),

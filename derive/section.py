@@ -19,6 +19,7 @@ turn of the section in space: a coned blade has Omega sin(cone) of it in steady 
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 
 import sympy as sp
 
@@ -171,10 +172,10 @@ def derivative(expression: sp.Expr, variable: sp.Symbol) -> sp.Expr:
 def load_derivative(load: str, motion: str) -> sp.Expr:
     """L: generalised loads of a segment per unit of its motions, from radial moments of the section's derivatives.
 
-    An entry is a radial moment, or zero where the section has no such derivative.
+    An entry is a radial moment, or zero where no section has such a derivative.
     """
     of_section = SECTION_LOADS[LOAD[load].section_load, f"_{MOTION[motion].argument}"]
-    return sp.Integer(0) if load_derivatives()[of_section] == 0 else airloads.load_derivative(load, motion)
+    return sp.Integer(0) if about_axis()[of_section] == 0 else airloads.load_derivative(load, motion)
 
 
 def force_coefficients() -> dict[sp.Symbol, sp.Expr]:
@@ -271,6 +272,113 @@ def air_at_section() -> list[tuple[sp.Symbol, sp.Expr]]:
         (lift_incidence, angle_of_attack + turn_incidence),
         (mach, section_speed / s.speed_of_sound),
     ]
+
+
+# An aerodynamic centre beside the pitch axis. Velocities, rotation and moment of a section are those of the axis.
+aerodynamic_center = s.quantity(
+    "aerodynamic_center", "x_a", "m", "aerodynamic centre of the section aft of the pitch axis"
+)
+center_along = s.quantity(
+    "center_along", r"x_a\cos\theta", "m", "aerodynamic centre from the pitch axis along i'"
+)
+center_below = s.quantity(
+    "center_below", r"x_a\sin\theta", "m", "aerodynamic centre from the pitch axis against n"
+)
+tangential_at_center = s.quantity(
+    "tangential_at_center", "u_{T,a}", "m/s", "velocity of the air along i' at the aerodynamic centre"
+)
+axial_at_center = s.quantity(
+    "axial_at_center", "u_{P,a}", "m/s", "velocity of the aerodynamic centre along n"
+)
+AT_CENTER = {
+    symbol: s.quantity(
+        f"{symbol.name}_at_center",
+        f"{s.QUANTITIES[symbol].latex}{{}}_{{|a}}",
+        s.QUANTITIES[symbol].unit,
+        f"{s.QUANTITIES[symbol].meaning}, of the aerodynamic centre",
+    )
+    for symbol in SECTION_LOADS.values()
+}
+
+
+def center() -> tuple[sp.Expr, sp.Expr]:
+    """Place of the aerodynamic centre along i' and against n: a section that is nose up has its rear below the axis."""
+    return aerodynamic_center * sp.cos(section_pitch), aerodynamic_center * sp.sin(section_pitch)
+
+
+def velocities_at_center() -> dict[sp.Symbol, sp.Expr]:
+    """u_T and u_P of the aerodynamic centre, which a rotation of the section moves ahead and down."""
+    along, below = center()
+    return {
+        tangential_velocity: tangential_velocity + below * section_spin,
+        axial_velocity: axial_velocity - along * section_spin,
+    }
+
+
+def air_beside_axis() -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Place of the aerodynamic centre beside the pitch axis, and the air that it meets, as `air_at_section`."""
+    named_center = dict(zip(center(), (center_along, center_below), strict=True))
+    velocities = velocities_at_center()
+    at_center = {tangential_velocity: tangential_at_center, axial_velocity: axial_at_center}
+    return [
+        *((symbol, place) for place, symbol in named_center.items()),
+        *((at_center[symbol], value.subs(named_center)) for symbol, value in velocities.items()),
+        *((symbol, value.xreplace(at_center)) for symbol, value in air_at_section()),
+    ]
+
+
+@functools.cache
+def about_axis() -> dict[sp.Symbol, sp.Expr]:
+    """Loads of a section about its pitch axis, and derivatives, by those of an aerodynamic centre beside the axis.
+
+    The radial drag, which is small, acts on the axis and by the velocity of the axis.
+    """
+    found = {SECTION_LOADS[load, ""]: _at_center(load) for load in LOADS}
+    for name in _ARGUMENTS:
+        for load in LOADS:
+            of_center = functools.partial(_derivative_at_center, load)
+            found[SECTION_LOADS[load, f"_{name}"]] = along_argument(name, of_center)
+    for force, arm in zip(("fn", "fx"), center(), strict=True):
+        found[SECTION_LOADS["m", ""]] -= arm * found[SECTION_LOADS[force, ""]]
+        for name, symbol in _ARGUMENTS.items():
+            derivative = arm * found[SECTION_LOADS[force, f"_{name}"]] + sp.diff(arm, symbol) * _at_center(
+                force
+            )
+            found[SECTION_LOADS["m", f"_{name}"]] -= derivative
+    return {symbol: sp.expand(_with_places(value)) for symbol, value in found.items()}
+
+
+def along_argument(name: str, at_center: Callable[[str], sp.Expr]) -> sp.Expr:
+    """Derivative with an argument of the axis of what has the derivatives `at_center` with those of the centre."""
+    moved = ((other, velocities_at_center().get(symbol, symbol)) for other, symbol in _ARGUMENTS.items())
+    total = sum(sp.diff(value, _ARGUMENTS[name]) * at_center(other) for other, value in moved)
+    return _with_places(total)
+
+
+def _with_places(expression: sp.Expr) -> sp.Expr:
+    """Name the place of the aerodynamic centre."""
+    names = {aerodynamic_center * wave(section_pitch): place for wave, place in _PLACES.items()}
+    return sp.expand(expression).subs(names)
+
+
+_ARGUMENTS = {
+    "ut": tangential_velocity,
+    "up": axial_velocity,
+    "ur": radial_velocity,
+    "theta": section_pitch,
+    "spin": section_spin,
+}
+_PLACES = {sp.cos: center_along, sp.sin: center_below}
+
+
+def _derivative_at_center(load: str, argument: str) -> sp.Expr:
+    return _at_center(load, f"_{argument}")
+
+
+def _at_center(load: str, argument: str = "") -> sp.Expr:
+    """A load or derivative at the centre; zero where the section has none."""
+    symbol = SECTION_LOADS[load, argument]
+    return sp.Integer(0) if load_derivatives()[symbol] == 0 else AT_CENTER[symbol]
 
 
 prandtl_glauert_factor = s.quantity("prandtl_glauert_factor", "g", "", "Prandtl-Glauert factor")

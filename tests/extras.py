@@ -6,6 +6,7 @@ Runs the commands in a folder; packages that are named count as not installed. N
 that it runs in an environment that has no more.
 """
 
+import math
 import os
 import sys
 from collections.abc import Iterable
@@ -23,6 +24,26 @@ STATIONS = """r [m],mass [kg/m],EI_flat [N*m**2],EI_edge [N*m**2],GJ [N*m**2],tw
 0.36,12,2e7,2e7,2e5,27,0.35,0.09
 3.8,12,2e7,2e7,2e5,0,0.35,0.09
 """
+ENVELOPE = (
+    *("--set", "envelope.dive_speed=200 keas", "--scan", "150:240:45keas"),
+    *("--set", 'envelope.altitudes={value=[0, 1000], unit="ft"}'),
+)
+DECAY = "time [s],a\n" + "".join(
+    f"{0.02 * k},{math.exp(-0.5 * 0.02 * k) * math.cos(20 * 0.02 * k) + 1e-3 * (k % 3)}\n" for k in range(200)
+)
+POINTS = """airspeed [ktas],frequency [Hz],frequency_error,mode
+200,3.2,0.1,beam
+250,3.2,0.1,beam
+"""
+CLOSED = f"""base = "{CASE}"
+[case]
+name = "closed"
+[[control.loops]]
+name = "hold"
+sensors = ["x rate"]
+inputs = ["cyclic_1c"]
+gain = -0.001
+"""
 BLADE = ("--at-rotor-speed", "458 rpm", "--collective", "10:50:20 deg", "--control-stiffness", "3e4 N*m/rad")
 # Each command as it needs no extra.
 PLAIN = {
@@ -32,10 +53,24 @@ PLAIN = {
     "describe": ("rotor.precone",),
     "sweep": (CASE, *SPEED, "--csv", "sweep.csv", "--plot", "sweep.png"),
     "flutter": (CASE, "--scan", "300:400:50kt"),
+    "margins": ("closed.toml", *SPEED, "--csv", "margins.csv", "--plot", "margins.png"),
     "boundary": (CASE, "--against", "rotor.precone=1:2:1 deg", "--scan", "300:400:50kt"),
+    "envelope": (CASE, *ENVELOPE),
     "map": (CASE, "--x", "rotor.precone=1:2:1 deg", "--y", "airspeed=300:400:100kt"),
     "sensitivity": (CASE, "--wrt", "rotor.precone", "--scan", "300:400:50kt"),
     "attribution": (CASE, "--mode", "chord", "--speed", "200 kt"),
+    "gust": (CASE, "--speed", "200 kt", "--output", "force_x", "--plot", "gust.png"),
+    "identify": ("decay.csv",),
+    "calibrate": (
+        CASE,
+        "--to",
+        "points.csv",
+        "--input",
+        "support.modes[beam].frequency",
+        "--out",
+        "fitted.toml",
+    ),
+    "mac": (CASE, "xv15", "--plot", "mac.png"),
     "report": (CASE, "--out", "report.html"),
     "study": (CASE, *RANGE, "--speed", "200 kt", "--out", "study.nc"),
     "export": (CASE, "rotor.mat", "--speed", "200 kt"),
@@ -77,7 +112,9 @@ def main(folder: str, *hidden: str) -> int:
 
     assert set(PLAIN) == set(proprotor.commands), set(PLAIN) ^ set(proprotor.commands)
     os.chdir(folder)
-    Path("stations.csv").write_text(STATIONS, encoding="utf-8")
+    texts = {"stations.csv": STATIONS, "decay.csv": DECAY, "points.csv": POINTS, "closed.toml": CLOSED}
+    for name, text in texts.items():
+        Path(name).write_text(text, encoding="utf-8")
     linearize, computed = Case.linearize, []
     for command, words in PLAIN.items():
         done = CliRunner().invoke(proprotor, [command, *words])

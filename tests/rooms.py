@@ -21,9 +21,10 @@ from typing import NamedTuple
 SOURCE = Path(__file__).parents[1] / "src" / "proprotor"
 # From the ground up to the workbench: data flow from the first to the last.
 ROOMS = (
-    "errors", "typing", "needs", "units", "datum", "files", "nastran",
-    "rotor", "support", "model",
-    "deck", "stability", "case", "study", "exchange", "tables", "plots", "report", "explore", "commands",
+    "errors", "typing", "needs", "units", "datum", "files", "records", "nastran",
+    "rotor", "support", "control", "model",
+    "deck", "stability", "responses", "case", "study", "exchange", "tables", "calibration",
+    "plots", "report", "explore", "commands",
 )  # fmt: skip
 # The one import of a room further down, deferred: a model's method that gives its modes.
 EXCEPTION = ("model", "stability", "LinearModel.modes")

@@ -90,6 +90,14 @@ airfoils = st.builds(
 )
 
 
+def places_on_the_chord(radius):
+    """Aft of the pitch axis, m: on it, at a place, or by a table from the centre to the tip."""
+    place = between(-0.01, 0.015)
+    table = st.tuples(place, place, place)
+    tables = table.map(lambda share: (radius * np.array([0.0, 0.5, 1.0]), radius * np.array(share)))
+    return st.just(0.0) | place.map(lambda share: share * radius) | tables
+
+
 def hinge_offsets(radius, hinges):
     """(e_β, e_ζ): coincident or apart, on the centre of rotation or off it."""
     flap, gap = between(0.01, 0.12), zero_or(between(0.005, 0.1))
@@ -107,6 +115,9 @@ def limp_rotors(draw, radius, hinges):
     return pp.Rotor.from_mass_distribution(
         station,
         mass,
+        mass_offset=draw(places_on_the_chord(radius)),
+        pitch_inertia=1e3 * mass.max() * radius**3,  # until the springs are there
+        aerodynamic_center=draw(places_on_the_chord(radius)),
         n_blades=draw(st.integers(3, 6)),
         radius=radius,
         root_cutout=radius * draw(between(0.05, 0.3)),
@@ -133,7 +144,7 @@ def rotors(draw, rotor_speed, radius, *, hinges="anywhere", stiff=False):
     """Rotors of a given size, sprung for a given speed; `stiff` ones have each blade motion above 1/rev."""
     limp = draw(limp_rotors(radius, hinges))
     inertia = limp.blade_inertia
-    pitch_inertia = inertia * draw(between(2e-4, 2e-2))
+    pitch_inertia = limp.offset_mass.inertia + inertia * draw(between(2e-4, 2e-2))
     spring_per_rev = between(1.2, 1.6) if stiff else between(0.4, 1.6)
     lag_per_rev = between(1.3, 2.5) if stiff else between(0.4, 2.5)
     gimbal_share = between(0.01, 0.3) if stiff else zero_or(between(0.01, 0.3))
@@ -146,6 +157,7 @@ def rotors(draw, rotor_speed, radius, *, hinges="anywhere", stiff=False):
         control_stiffness=control,
         cyclic_control_stiffness=None if of_tilt is None else of_tilt * control,
         pitch_inertia=pitch_inertia,
+        propeller_inertia=draw(st.none() | between(0.8, 1.0).map(lambda share: share * pitch_inertia)),
         gimbal_stiffness=inertia * rotor_speed**2 * draw(gimbal_share),
         **{name: inertia * rotor_speed * draw(zero_or(between(1e-3, 1e-2))) for name in DAMPERS},
     )

@@ -5,16 +5,19 @@ of rooms, and a room imports only the rooms above it. docs/architecture.md descr
 each room is its map.
 
     errors typing needs units datum files   the ground: messages, types, packages and memory, SI, numbers, files
+    records     time histories of a test: frequency and damping of their modes, with errors
     nastran     files of Nastran: modes at a grid point, matrices of a reduced structure
     rotor       a rotor trimmed in its air: section loads, operation, options, the trim
     support     the structure that carries a rotor: normal modes, beam wing, files of other programs
+    control     control loops: laws, delays, actuators
     model       M, C, K, B of a rotor, of a support, and of both; the stamp that every result has
     deck        text to configuration and back
     stability   modes, their names, sweeps, flutter boundaries, sensitivities, stability maps
+    responses   spectra in turbulence, outputs over time for inputs and gusts
     case        a configuration with the analyses as methods
     study       many designs: sampling, workers, uncertainty
     exchange    other programs: netCDF, MATLAB, OpenMDAO
-    tables plots     numbers and pictures of a result
+    tables calibration plots     numbers and pictures of a result; inputs fitted to test points
     report explore   pages: a report of a case, a page with sliders
     commands    the command line
 """

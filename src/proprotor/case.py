@@ -7,14 +7,17 @@ from collections.abc import Mapping
 
 from proprotor.deck.build import load
 from proprotor.deck.file import list_cases
-from proprotor.deck.vary import vary
+from proprotor.deck.vary import vary, with_control
 from proprotor.model.configuration import Configuration
 from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary_against import boundary_against
+from proprotor.stability.envelope import envelope
 from proprotor.stability.floquet import floquet
 from proprotor.stability.flutter import flutter_point
+from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.stability.map import stability_map
+from proprotor.stability.margins import margins
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
 
@@ -29,14 +32,18 @@ class Case(Configuration):
     """
 
     vary = vary
+    with_control = with_control
     sweep = sweep_case
     boundaries = boundaries
     boundary_against = boundary_against
     flutter_point = flutter_point
+    margins = margins
     sensitivity = sensitivity
     attribution = attribution
     stability_map = stability_map
     floquet = floquet
+    growth_constraint = growth_constraint
+    envelope = envelope
 
 
 def load_case(name_or_path: str | os.PathLike[str], settings: Mapping[str, str] | None = None) -> Case:

@@ -11,7 +11,12 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
+from proprotor.calibration.calibrate import calibrate
+from proprotor.calibration.calibrated_deck import calibrated_deck
+from proprotor.calibration.modal_comparison import compare_modes
 from proprotor.case import Case, list_cases, load_case
+from proprotor.control.control_law import ControlLaw
+from proprotor.control.control_loop import ControlLoop
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.exchange.dmig import save_dmig
@@ -23,6 +28,13 @@ from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.model.rotor_model import rotor_model
 from proprotor.model.several_rotors import mount_rotors
 from proprotor.model.structural_damping import neutral_damping
+from proprotor.records.identify import identify
+from proprotor.records.record import Record, read_record
+from proprotor.responses.design_gusts import design_gust, design_turbulence
+from proprotor.responses.discrete_gust import discrete_gust
+from proprotor.responses.gust_response import gust_response
+from proprotor.responses.time_response import time_response
+from proprotor.responses.turbulence import Turbulence
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
@@ -32,16 +44,20 @@ from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import EquationSet
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import Rotor
 from proprotor.stability.branches import by_branch
+from proprotor.stability.envelope import envelope
 from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.study import sampling
 from proprotor.study.study import study
 from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
 from proprotor.support.beam_wing import Pylon, Wing, beam_wing
 from proprotor.support.normal_modes import NormalModes, rigid_support, two_axis_pivot
+from proprotor.tables.points import read_points
 
 __all__ = [
     "Airfoil",
@@ -50,27 +66,44 @@ __all__ = [
     "BladeFrequencies",
     "BladeStations",
     "Case",
+    "ControlLaw",
+    "ControlLoop",
     "DriveTrain",
     "EquationSet",
     "InputError",
     "LinearModel",
     "NormalModes",
+    "OffsetMass",
     "Operation",
     "Pylon",
+    "Record",
     "Rotor",
+    "Turbulence",
     "WhirlDerivatives",
     "Wing",
     "beam_wing",
     "by_branch",
+    "calibrate",
+    "calibrated_deck",
+    "compare_modes",
+    "design_gust",
     "design_inputs",
+    "design_turbulence",
+    "discrete_gust",
     "distribution",
+    "envelope",
     "frequency_response",
+    "growth_constraint",
+    "gust_response",
+    "identify",
     "list_cases",
     "load_case",
     "load_results",
     "mount",
     "mount_rotors",
     "neutral_damping",
+    "read_points",
+    "read_record",
     "rigid_propeller",
     "rigid_support",
     "rotor_model",
@@ -83,6 +116,7 @@ __all__ = [
     "sobol_indices",
     "standard_air",
     "study",
+    "time_response",
     "two_axis_pivot",
     "write_c81",
 ]

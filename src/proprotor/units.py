@@ -63,6 +63,8 @@ pound = 0.45359237 * kilogram = lb = lbm
 newton = kilogram * meter / second ** 2 = N
 pound_force = 9.80665 * pound * meter / second ** 2 = lbf
 slug = pound_force * second ** 2 / foot
+watt = newton * meter / second = W
+horsepower = 550 * foot * pound_force / second = hp
 
 # differences of temperature only: degrees of both kinds, and no zero
 kelvin = [temperature] = K = degC
@@ -73,6 +75,7 @@ rankine = 5 / 9 * kelvin = degR = degF
 _MEANINGS = {
     "": ("a plain number", '0.0065 or "1 %"'),
     "m": ("a length", '"12.5 ft"'),
+    "s": ("a time", '"0.5 s"'),
     "m**2": ("an area", '"50 ft**2"'),
     "rad": ("an angle", '"2.5 deg"'),
     "1/rad": ("a slope per angle", '"5.7/rad"'),
@@ -89,6 +92,7 @@ _MEANINGS = {
     "kg/m**3": ("a density", '"1.225 kg/m**3"'),
     "kg*m**2/m": ("a moment of inertia per length", '"2 lb*ft**2/ft"'),
     "N": ("a force", '"1.5e8 lbf"'),
+    "W": ("a power", '"900 hp"'),
     "N*m**2": ("a bending or torsion stiffness", '"3.7e9 lbf*in**2"'),
     "N*m/rad": ("a moment per angle", '"2700 in*lbf/deg"'),
     "K": ("a difference of temperature", '"15 K" or "15 degC"'),

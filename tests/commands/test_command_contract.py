@@ -17,11 +17,20 @@ from click.testing import CliRunner, Result
 import proprotor as pp
 from proprotor.commands.arguments import EXIT_CODES
 from proprotor.commands.main import main
+from tests import extras
 
 PROPROTOR = [sys.executable, "-c", "from proprotor.commands.main import main; main()"]
 MAP = ("xv15-uncoupled", "--x", "airspeed=200:300:50kt", "--y", "rotor.precone=1:3:1 deg")
 STUDY = ("xv15-uncoupled", "--vary", "rotor.precone=1:2:1 deg", "--speed", "200 kt", "--workers", "1")
+ENVELOPE = (
+    *("xv15-uncoupled", "--set", "envelope.dive_speed=150 keas", "--scan", "140:180:20keas"),
+    *("--set", 'envelope.altitudes={ value = [0, 1], unit = "km" }'),
+)
+GIVEN_FILES = {"decay.csv", "points.csv"}
 FAST = ("--pitch", "rigid", "--rotor-speed", "constant")
+GUST = ("xv15-uncoupled", "--speed", "200 kt", "--output", "force_x")
+MAC = ("xv15-uncoupled", "xv15")
+CALIBRATE = ("xv15-uncoupled", "--to", "points.csv", "--input", "support.modes[beam].frequency")
 # Of each command arguments that succeed, and some that fail with 2; with 1 where it can.
 SUCCEED = {
     "cases": [(), ("xv15-uncoupled",), ("xv15-uncoupled", "--set", "rotor.precone=1 deg")],
@@ -30,12 +39,17 @@ SUCCEED = {
     "sweep": [("xv15-uncoupled", "--speed", "0:200:200kt")],  # no airspeed at the first
     "flutter": [("xv15-uncoupled", "--speed", "160 kt", *FAST), ("xv15-uncoupled", "--scan", "100:110:5kt")],
     "map": [(*MAP, *FAST)],
+    "envelope": [(*ENVELOPE, *FAST)],
     "sensitivity": [
         ("xv15-uncoupled", "--wrt", "rotor.precone"),
         ("xv15-uncoupled", "--of", "damping", "--speed", "300 kt", "--mode", "beam", *FAST),
     ],
     "attribution": [("xv15-uncoupled", "--speed", "300 kt", *FAST)],
     "study": [STUDY],
+    "gust": [(*GUST, *FAST), (*GUST, "--gradient", "30:60:30 ft", *FAST)],
+    "identify": [("decay.csv",), ("decay.csv", "--method", "moving-block", "--at", "200 keas")],
+    "calibrate": [(*CALIBRATE, *FAST)],
+    "mac": [MAC],
     "export": [
         ("xv15-uncoupled", "a.bdf", "--speed", "200 kt", "--grid", "1", "--first-extra-point", "11"),
         ("xv15-uncoupled", "a.mat", "--speed", "200 kt", *FAST),
@@ -51,12 +65,17 @@ FAIL = {
         ("xv15-uncoupled", "--x", "airspeed=1:2:1kt", "--y", "rotor.precon=1:2:1 deg"),
         "did you mean rotor.precone?",
     ),
+    "envelope": ((*ENVELOPE, "--only", "heavy"), "variants = heavy: unknown variant"),
     "sensitivity": (("xv15-uncoupled", "--wrt", "rotor.precon"), "wrt = rotor.precon: unknown input"),
     "attribution": (("xv15-uncoupled", "--speed", "300 kt", "--mode", "bean"), "did you mean beam?"),
     "study": (
         ("xv15-uncoupled", "--vary", "rotor.precone", "--speed", "200 kt"),
         "--vary = rotor.precone: must be",
     ),
+    "gust": ((*GUST[:3], "--output", "force_u"), "unknown output 'force_u'"),
+    "identify": (("decay.csv", "--channel", "b"), "channels = b: unknown channel"),
+    "calibrate": ((*CALIBRATE[:3], "--input", "rotor.precon"), "did you mean rotor.precone?"),
+    "mac": (("xv15-uncoupled", "xv16"), "did you mean xv15?"),
     "export": (("xv15-uncoupled", "a.txt", "--speed", "200 kt"), "FILE = a.txt: must end in .bdf"),
 }
 NOTHING_ANALYSED = {
@@ -72,10 +91,18 @@ OUTPUTS = [
     ("flutter", ("xv15-uncoupled",), "--csv", "x.csv"),
     ("map", MAP, "--csv", "x.csv"),
     ("map", MAP, "--plot", "x.pdf"),
+    ("envelope", ENVELOPE, "--csv", "x.csv"),
+    ("envelope", ENVELOPE, "--plot", "x.png"),
     ("sensitivity", ("xv15-uncoupled",), "--csv", "x.csv"),
     ("sensitivity", ("xv15-uncoupled",), "--plot", "x.svg"),
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--csv", "x.csv"),
     ("attribution", ("xv15-uncoupled", "--speed", "200 kt"), "--plot", "x.png"),
+    ("gust", GUST, "--csv", "x.csv"),
+    ("gust", GUST, "--plot", "x.png"),
+    ("mac", MAC, "--csv", "x.csv"),
+    ("mac", MAC, "--plot", "x.png"),
+    ("calibrate", CALIBRATE, "--csv", "x.csv"),
+    ("calibrate", CALIBRATE, "--out", "x.toml"),
     ("study", STUDY, "--out", "x.nc"),
     ("study", STUDY, "--csv", "x.csv"),
     ("study", STUDY, "--save", "x.toml"),
@@ -90,7 +117,10 @@ def run(*arguments: str) -> Result:
 
 @pytest.fixture(autouse=True)
 def empty_folder(tmp_path, monkeypatch):
+    """A folder with nothing but a record and test points."""
     monkeypatch.chdir(tmp_path)
+    for name, text in (("decay.csv", extras.DECAY), ("points.csv", extras.POINTS)):
+        (tmp_path / name).write_text(text)
     return tmp_path
 
 
@@ -214,7 +244,7 @@ def test_an_output_that_cannot_be_written_is_told_before_the_analysis(
 def test_a_file_named_minus_is_standard_output_or_refused(command, arguments, option, file):
     """Tables are printed, nothing else with them; what is no text, or has its kind from its ending, needs a file."""
     result = run(command, *arguments, option, "-")
-    assert list(Path().iterdir()) == []
+    assert {entry.name for entry in Path().iterdir()} == GIVEN_FILES
     if option != "--csv":
         assert (result.exit_code, result.stdout) == (2, "") and " = -: must end in " in result.stderr
         return

@@ -26,6 +26,7 @@ COMMANDS = {
     "export": ("a.mat", "--speed", "250 kt"),
     "sweep": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
     "flutter": ("--csv", "a.csv"),
+    "margins": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
     "map": (
         "--x",
         "airspeed=200:300:50kt",
@@ -44,8 +45,12 @@ COMMANDS = {
         "--plot",
         "a.png",
     ),
+    "envelope": ("--csv", "a.csv", "--plot", "a.png"),
     "sensitivity": ("--csv", "a.csv", "--plot", "a.png"),
     "attribution": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
+    "gust": (*SPEED, "--csv", "a.csv", "--plot", "a.png"),
+    "calibrate": ("--to", "points.csv", "--input", "rotor.precone", "--out", "a.toml"),
+    "mac": ("xv15", "--csv", "a.csv", "--plot", "a.png"),
     "study": ("--vary", "rotor.precone=1:3:1 deg", *SPEED, "--out", "a.nc", "--checkpoint", "kept"),
 }
 

@@ -16,15 +16,15 @@ from tests.oracles.comparison import assert_matrices_match, picked
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import (
     AZIMUTH,
+    DOFS,
     FLAP,
     LAG,
     PITCH,
-    hinge_spring_energy,
     inertia_rows,
     linearised,
     spring_rows,
 )
-from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import NO_LINKAGES, SPEED_OF_SOUND, random_rotor
 from tests.oracles.virtual_work import airload_rows, lift_slope_rows
 
 DENSITY = 1.1
@@ -188,30 +188,46 @@ def test_airloads_without_pitch_dynamics(name):
 
 
 def pitch_flap_and_pitch_lag_coupling(rotor, trim):
-    """K_Pβ and K_Pζ: the control spring against the spring moment −∂U/∂θ of a blade bent a little further."""
+    """K_Pβ and K_Pζ: the control spring against the pitch moment of springs and masses of a blade bent further."""
     step = 1e-30
-
     linked = rotor.kinematic_pitch_flap_coupling * trim[FLAP] + rotor.kinematic_pitch_lag_coupling * trim[LAG]
+    loose = replace(rotor, collective=rotor.collective - linked, control_stiffness=0.0, **NO_LINKAGES)
 
-    def pitch_moment(flap, lag):
-        turn = Motion(rotor.collective - linked + rotor.structural_pitch_offset, 1.0)
-        return -hinge_spring_energy(rotor, Motion(flap), Motion(lag), turn).rate
+    def pitch_moment(bent):
+        q = Motion(trim + 1j * step * np.eye(len(trim))[bent])
+        return (inertia_rows(loose, q, 0.0) + spring_rows(loose, q, 0.0))[PITCH].imag / step
 
-    bent = (trim[FLAP] + 1j * step, trim[LAG]), (trim[FLAP], trim[LAG] + 1j * step)
-    return [-np.imag(pitch_moment(*angles)) / step / rotor.control_stiffness for angles in bent]
+    return [pitch_moment(bent) / rotor.n_blades / rotor.control_stiffness for bent in (FLAP, LAG)]
+
+
+def with_couplings(case, model, unturned):
+    """What airloads add whose pitch follows flap and lag, the loads of the pitch being those of the air `unturned`."""
+    rotor, trim = case.oracle(model)
+    flap_coupling, lag_coupling = pitch_flap_and_pitch_lag_coupling(rotor, trim)
+    _, C, K = linearised(lambda q, time: airload_rows(case.air, rotor, q, time), trim, 0.0)
+    _, _, by_angle = linearised(lambda q, time: airload_rows(unturned, rotor, q, time), trim, 0.0)
+    pitch = by_angle[:, PITCH : PITCH + 3]
+    K[:, FLAP : FLAP + 3] -= flap_coupling * pitch
+    K[:, LAG : LAG + 3] -= lag_coupling * pitch
+    return np.zeros_like(C), C, K
 
 
 @pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
 def test_quasi_static_pitch_couples_flap_and_lag_into_the_airloads(name):
     """Pitch follows −K_Pβ δβ − K_Pζ δζ of each blade in the airloads only, a static angle that turns no section."""
-    case = Case(**CASES[name])
+    case = Case(**CASES[name], aerodynamic_center=0.0)
     model, airloads = case.airloads(pitch="coupling")
-    rotor, trim = case.oracle(model)
-    flap_coupling, lag_coupling = pitch_flap_and_pitch_lag_coupling(rotor, trim)
-    _, C, K = linearised(lambda q, time: airload_rows(case.air, rotor, q, time), trim, 0.0)
     unturned = replace(case.air, section_damping=False)
-    _, _, by_angle = linearised(lambda q, time: airload_rows(unturned, rotor, q, time), trim, 0.0)
-    pitch = by_angle[:, PITCH : PITCH + 3]
-    K[:, FLAP : FLAP + 3] -= flap_coupling * pitch
-    K[:, LAG : LAG + 3] -= lag_coupling * pitch
-    case.assert_match(airloads, (np.zeros_like(C), C, K), model)
+    case.assert_match(airloads, with_couplings(case, model, unturned), model)
+
+
+@pytest.mark.parametrize("name", ["windmilling", "powered, tables"])
+def test_quasi_static_pitch_moves_the_aerodynamic_centre(name):
+    """In collective motions, whose pitch stands still in a section's eyes; a cyclic one turns once a revolution."""
+    case = Case(**CASES[name])
+    model, (_, _, actual) = case.airloads(pitch="coupling")
+    _, _, expected = with_couplings(case, model, case.air)
+    own, whole = ([dofs.index(name) for name in ("flap_0", "lag_0")] for dofs in (model.dofs, DOFS))
+    rows = [DOFS.index(name) for name in model.dofs]
+    difference = np.abs(actual[:, own] - expected[np.ix_(rows, whole)])
+    assert (difference.max(axis=0) < 1e-10 * np.abs(expected[:, whole]).max(axis=0)).all()

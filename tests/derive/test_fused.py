@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from proprotor_equations import flap_lag_springs
 from proprotor_equations import rotor as readable
-from proprotor_equations.fused import general, plain
+from proprotor_equations.fused import general, offset, plain
 
 import proprotor as pp
 from proprotor.rotor import fused
@@ -33,6 +33,13 @@ def random_rotors(count, seed=0):
     return blade, SEGMENTS | {name: rng.uniform(-1.0, 1.0, (count, 3)) for name in of_segments}
 
 
+def on_axis(blade, segments):
+    """The same rotors with nothing beside the pitch axis."""
+    beside = [name for name in keywords(offset.in_vacuum) if name.startswith("offset_")]
+    alone = {name: 0 * load if name.startswith("fd_spin") else load for name, load in segments.items()}
+    return {name: value for name, value in blade.items() if name not in beside}, alone
+
+
 def expected_matrices(blade, segments):
     loads = segments if segments else SEGMENTS | dict.fromkeys(LOAD_MOMENTS, 0.0)
     return evaluate(readable.matrices, loads | blade)._asdict()
@@ -51,7 +58,11 @@ def assert_alike(found, expected, rotor_speed):
 def at(blade, rows):
     """Quantities of some rotors, (rows,); of a single place as plain numbers."""
     return {
-        name: value if isinstance(value, float) else value[rows] if np.ndim(rows) else float(value[rows])
+        name: value
+        if isinstance(value, float | bool)
+        else value[rows]
+        if np.ndim(rows)
+        else float(value[rows])
         for name, value in blade.items()
     }
 
@@ -71,13 +82,16 @@ def without_what_is_rare(blade):
 
 @pytest.fixture(params=["in air", "in vacuum"])
 def general_rotors(request):
-    blade, segments = random_rotors(300)
+    blade, segments = on_axis(*random_rotors(300))
     return blade, segments if request.param == "in air" else None
 
 
-@pytest.fixture(params=["general", "plain"])
+@pytest.fixture(params=["offset", "general", "plain"])
 def rotors(request, general_rotors):
     blade, segments = general_rotors
+    if request.param == "offset":
+        blade, beside = random_rotors(300)
+        return blade | {"beside_axis": True}, None if segments is None else beside
     return (without_what_is_rare(blade) if request.param == "plain" else blade), segments
 
 

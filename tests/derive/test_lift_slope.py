@@ -12,7 +12,7 @@ import proprotor as pp
 from tests.oracles.comparison import assert_matrices_match
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import blades, clock
-from tests.oracles.random_rotors import NO_LINKAGES, SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import NO_LINKAGES, NO_OFFSETS, SPEED_OF_SOUND, random_rotor
 from tests.oracles.virtual_work import section_flow
 
 ZERO_LIFT = -0.03
@@ -30,7 +30,7 @@ class Feathered:
 
     def __init__(self, seed, **options):
         airfoil = pp.Airfoil(lift_slope=5.8, zero_lift_angle=ZERO_LIFT)
-        self.pair = random_rotor(seed, airfoil=airfoil, **NO_LINKAGES)
+        self.pair = random_rotor(seed, airfoil=airfoil, **NO_LINKAGES, **NO_OFFSETS)
         self.options = {
             "compressibility": False,
             "section_damping": False,

@@ -14,7 +14,7 @@ from tests.derive.test_lagrangian import assert_model_matches, expected_matrices
 from tests.oracles import nonlinear_rotor
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import AZIMUTH, FLAP, LAG, PITCH, hinge_spring_energy, rows_in_vacuum
-from tests.oracles.random_rotors import NO_LINKAGES, SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import NO_LINKAGES, NO_OFFSETS, SPEED_OF_SOUND, random_rotor
 
 SPEED = 47.0
 BLADES = ("flap_0", "flap_1c", "flap_1s", "lag_0", "lag_1c", "lag_1s")
@@ -23,7 +23,7 @@ BLADES = ("flap_0", "flap_1c", "flap_1s", "lag_0", "lag_1c", "lag_1s")
 def flat_rotor(n_blades=3, **changes):
     """Nothing bends it in vacuum, and no dampers."""
     flat = {"precone": 0.0, "flap_damping": 0.0, "lag_damping": 0.0, "flap_outboard_fraction": 0.9}
-    return random_rotor(5, n_blades=n_blades, **(NO_LINKAGES | flat | changes)).package
+    return random_rotor(5, n_blades=n_blades, **(NO_LINKAGES | NO_OFFSETS | flat | changes)).package
 
 
 def in_vacuum(rotor, collective=0.4, airspeed=0.0, **options):

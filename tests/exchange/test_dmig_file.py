@@ -160,3 +160,11 @@ def test_models_that_are_no_rotor_at_one_airspeed(case, model, tmp_path):
     with pytest.raises(InputError, match=r"^airspeed = 2000 m/s: "):
         write(failed, tmp_path / "rotor.bdf")
     assert not list(tmp_path.iterdir())
+
+
+def test_control_loops_are_refused_since_they_are_no_part_of_the_rotor(tmp_path):
+    loop = pp.ControlLoop(name="hold", sensors="x rate", inputs="cyclic_1c", gain=-1e-3)
+    closed = pp.load_case("xv15-uncoupled").with_control(loop).linearize(100.0)
+    with pytest.raises(pp.InputError, match="are not among the rotor's matrices"):
+        pp.save_dmig(closed, tmp_path / "a.bdf", grid=1, first_extra_point=10)
+    assert not list(tmp_path.iterdir())

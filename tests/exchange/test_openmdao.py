@@ -7,7 +7,7 @@ import proprotor as pp
 
 om = pytest.importorskip("openmdao.api")
 
-from proprotor.exchange.openmdao import WhirlFlutter, variable_name  # noqa: E402
+from proprotor.exchange.openmdao import GrowthConstraint, WhirlFlutter, variable_name  # noqa: E402
 
 INPUTS = ["rotor.precone", "support.modes[chord].frequency"]
 SEARCH = "375:395:10kt"  # around the boundary of the XV-15, at about 384 kt
@@ -132,3 +132,74 @@ def test_every_unit_of_a_deck_is_one_of_openmdao(case, problem):
     made = problem(inputs=list(pp.design_inputs(case)), search=SEARCH)
     assert made.get_val("rotor_precone", units="deg")[0] == pytest.approx(2.5)
     assert made.get_val("operation_rotor_speed", units="rpm")[0] == pytest.approx(458)
+
+
+# The constraint ------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def constrained(case, tmp_path, monkeypatch):
+    """A problem of the constraint alone."""
+    monkeypatch.chdir(tmp_path)
+
+    def build(**options):
+        made = om.Problem(reports=False)
+        made.model.add_subsystem("wing", GrowthConstraint(case=case, **options), promotes=["*"])
+        made.setup()
+        return made
+
+    return build
+
+
+@pytest.mark.parametrize("airspeed", ["100:200:25kt", "300:420:20kt"], ids=["stable", "unstable"])
+def test_the_constraint_exists_at_every_design(case, constrained, airspeed):
+    made = constrained(inputs=INPUTS, airspeed=airspeed, level=0.001, sharpness=50.0)
+    made.run_model()
+    found = case.growth_constraint(airspeed, (), level=0.001, sharpness=50.0)
+    assert made.get_val("growth", units="1/min")[0] == pytest.approx(60 * found.constraint.item(), rel=1e-12)
+    assert set(assert_exact(made)) == {("growth", variable_name(path)) for path in INPUTS}
+
+
+def test_the_constraint_tells_why_it_cannot_be_had(constrained):
+    made = constrained(inputs=INPUTS, airspeed=[100.0, 400.0])
+    with pytest.raises(om.AnalysisError, match="airspeed = 400 m/s: "):
+        made.run_model()
+    with pytest.raises(pp.InputError, match="airspeed: must be given for the growth"):
+        constrained(inputs=INPUTS)
+    with pytest.raises(pp.InputError, match=r"did you mean rotor\.precone"):
+        constrained(inputs=["rotor.precon"], airspeed=100.0)
+
+
+def test_an_optimum_is_that_of_a_search(tmp_path, monkeypatch):
+    """The least control stiffness that keeps a wing stable, by OpenMDAO and by roots of the flutter speed."""
+    from scipy.optimize import brentq
+
+    monkeypatch.chdir(tmp_path)
+    wing = pp.load_case("xv15-wing")
+    path = "rotor.control_stiffness"
+    own = pp.design_inputs(wing)[path].si
+    made = om.Problem(reports=False)
+    made.model.add_subsystem(
+        "scale",
+        om.ExecComp(f"control = {own!r} * stiffer", control={"units": "N*m/rad"}, do_coloring=False),
+        promotes=["*"],
+    )
+    constraint = GrowthConstraint(
+        case=wing, inputs={"control": path}, airspeed="180:360:10kt", sharpness=2000.0
+    )
+    made.model.add_subsystem("wing", constraint, promotes=["*"])
+    made.model.add_design_var("stiffer", lower=0.8, upper=4.0)
+    made.model.add_objective("stiffer")
+    made.model.add_constraint("growth", upper=0.0)
+    made.driver = om.ScipyOptimizeDriver(optimizer="SLSQP", tol=1e-9, disp=False)
+    made.setup()
+    made.set_val("stiffer", 3.0)
+    assert made.run_driver().success
+    wanted = 360 * 1852 / 3600
+    lowest = brentq(
+        lambda share: wing.vary({path: share * own}).flutter_point("150:480:8kt").speed - wanted,
+        1.0,
+        3.0,
+        xtol=1e-6,
+    )
+    assert lowest <= made.get_val("stiffer")[0] <= lowest * (1 + 2e-3)

@@ -3,6 +3,8 @@
 A constant system seen from axes that turn is periodic: x = R(ψ) y with y' = B y has the transition exp(B T).
 """
 
+import dataclasses
+
 import numpy as np
 import pytest
 import scipy.linalg
@@ -148,6 +150,18 @@ def test_a_gimbal_that_nothing_levels_has_its_reason():
 def test_a_free_aircraft_is_refused():
     with pytest.raises(InputError, match="stands still"):
         pp.load_case("xv15-aircraft").linearize(150.0, shaft_angle=0.05)
+
+
+def test_blades_with_an_aerodynamic_centre_beside_their_axis_are_refused():
+    rotor = dataclasses.replace(CASE.rotor, aerodynamic_center=0.01)
+    with pytest.raises(InputError, match="pitch axis"):
+        pp.rotor_model(rotor, CASE.operation, 150.0, shaft_angle=0.05)
+
+
+def test_control_loops_are_refused():
+    closed = dataclasses.replace(CASE, loops=("a loop",))
+    with pytest.raises(InputError, match="without control loops"):
+        closed.around(150.0, shaft_angle=0.05)
 
 
 def test_a_flutter_speed_is_where_its_mode_has_no_damping():

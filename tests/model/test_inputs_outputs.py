@@ -18,6 +18,7 @@ from tests.oracles.inputs import (
     swashplate_columns,
 )
 from tests.oracles.nonlinear_rotor import DOFS
+from tests.oracles.random_rotors import NO_OFFSETS
 from tests.oracles.virtual_work import airload_rows, lift_slope_rows
 
 INPUTS = ("collective", "cyclic_1c", "cyclic_1s", "gust_x", "gust_y", "gust_z")
@@ -312,7 +313,7 @@ def test_a_drive_train_adds_to_azimuth_and_hub():
 
 
 def test_a_rigid_rotor_on_a_shaft_is_a_torsion_pendulum():
-    case = Case(**CASES["powered"])
+    case = Case(**CASES["powered"], **NO_OFFSETS)
     train = pp.DriveTrain(drive_inertia=40.0, drive_damping=600.0, shaft_stiffness=3e5)
     locked = ("flap", "lag", "pitch", "gimbal")
     model = case.model(airloads="none", locked=locked, drive_train=train).submodel(("azimuth",))

@@ -9,12 +9,21 @@ from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations.fused import general, plain
+from proprotor_equations.fused import general, offset, plain
 
 from proprotor.rotor.fused_balance import moments_of
 from tests.mutation import one_blade, paper_blade
 from tests.mutation.comparison import Check, call, matrix_check, values_check
-from tests.mutation.inputs import Quantities, blade_quantities, natural_sizes, points, stacked
+from tests.mutation.inputs import (
+    GENERAL,
+    OFFSET,
+    PLAIN,
+    Quantities,
+    blade_quantities,
+    natural_sizes,
+    points,
+    stacked,
+)
 from tests.mutation.one_blade import Point
 from tests.mutation.sections import StraightAirfoil, section_derivatives
 from tests.oracles.motion import Motion
@@ -34,8 +43,8 @@ def checks() -> Iterator[Check]:
     yield from _balance()
     yield from _trim()
     yield _line_by_plan()
-    yield from _balance_by_plan(general)
-    yield from _balance_by_plan(plain)
+    for kind, plans in ((OFFSET, offset), (GENERAL, general), (PLAIN, plain)):
+        yield from _balance_by_plan(kind, plans)
 
 
 def _flown(published: bool) -> list[Point]:
@@ -101,11 +110,11 @@ def moments(point: Point) -> dict[str, NDArray]:
 
 
 @functools.cache
-def _quantities(published: bool, plain: bool = False) -> Quantities:
+def _quantities(published: bool, kind: str = OFFSET) -> Quantities:
     """Of the segments, (points, segments)."""
-    whole = {name: np.asarray(value)[..., None] for name, value in blade_quantities(plain).items()}
+    whole = {name: np.asarray(value)[..., None] for name, value in blade_quantities(kind).items()}
     whole |= {"beyond_flap_hinge": BEYOND_FLAP[None], "beyond_lag_hinge": BEYOND_LAG[None]}
-    flown = points(plain) if plain else _flown(published)
+    flown = _flown(published) if kind == OFFSET else points(kind)
     return whole | stacked(_geometry(p) | moments(p) for p in flown)
 
 
@@ -173,19 +182,39 @@ def _blade(published: bool) -> Iterator[Check]:
 def _balance() -> Iterator[Check]:
     """Of springs and centrifugal force, and its change with coning, lag, elastic pitch and collective."""
     quantities = blade_quantities()
-    pairs = [one_blade.steady_rows(one_blade.vacuum_rows, p) for p in points()]
+    pairs = [_in_vacuum(p) for p in points()]
     rows, slopes = map(np.array, zip(*pairs, strict=True))
-    told = "steady balance of the nonlinear rotor in vacuum"
+    told = "steady balance of the nonlinear rotor in vacuum, its masses on the pitch axis"
     yield matrix_check(("trim", "residual"), told, quantities, rows[..., None], _moment_size())
     yield matrix_check(("trim", "jacobian"), told, quantities, slopes, _moment_size())
+    beside = [_beside_axis(p) for p in points()]
+    rows, slopes = map(np.array, zip(*beside, strict=True))
+    told = "steady inertia forces of the nonlinear rotor, with and without its offsets"
+    yield matrix_check(("trim", "offset_residual"), told, quantities, rows[..., None], _moment_size())
+    yield matrix_check(("trim", "offset_jacobian"), told, quantities, slopes, _moment_size())
     loads = np.array([_undeflected_inertia(p) for p in points()])
     told = "steady inertia forces on the undeflected blade of the nonlinear rotor"
     yield matrix_check(("trim", "precone_load"), told, quantities, loads[..., None], _moment_size())
 
 
+def _in_vacuum(point: Point) -> tuple[NDArray, NDArray]:
+    """Steady loads and slopes of springs, lumped pitch inertia and masses on the pitch axis."""
+    return one_blade.steady_rows(one_blade.vacuum_rows, replace(point, rotor=one_blade.lumped(point.rotor)))
+
+
+def _beside_axis(point: Point) -> tuple[NDArray, NDArray]:
+    """What the place of the masses beside the axis adds to steady inertia forces and their slopes."""
+    beside, on_axis = (
+        one_blade.steady_rows(inertia_rows, replace(point, rotor=change(point.rotor)))
+        for change in (one_blade.without_lumped, one_blade.on_axis)
+    )
+    return beside[0] - on_axis[0], beside[1] - on_axis[1]
+
+
 def _undeflected_inertia(point: Point) -> NDArray:
     """Flap, lag and pitch moment (3,) of the steady inertia forces without coning, lag and elastic pitch."""
-    rows, _ = one_blade.steady_rows(inertia_rows, replace(point, trim=np.zeros_like(point.trim)))
+    flat = replace(point, trim=np.zeros_like(point.trim), rotor=one_blade.on_axis(point.rotor))
+    rows, _ = one_blade.steady_rows(inertia_rows, flat)
     return rows[:3]
 
 
@@ -263,11 +292,10 @@ def _filled(layouts: dict[str, list[list[int]]], results: tuple[NDArray, ...]) -
     }
 
 
-def _balance_by_plan(plans: ModuleType) -> Iterator[Check]:
+def _balance_by_plan(kind: str, plans: ModuleType) -> Iterator[Check]:
     """Balance without airloads, work of the airloads, and the change of both with the unknowns."""
-    is_plain = plans is plain
-    module, flown = f"fused.{'plain' if is_plain else 'general'}", points(is_plain)
-    quantities, along = blade_quantities(is_plain), _quantities(published=False, plain=is_plain)
+    module, flown = f"fused.{kind}", points(kind)
+    quantities, along = blade_quantities(kind), _quantities(published=False, kind=kind)
     # Pitch that follows flap and lag belongs to the perturbation, not to the trim.
     still = [
         replace(p, pitch_flap_coupling=0.0, pitch_lag_coupling=0.0, airfoil=StraightAirfoil()) for p in flown
@@ -289,9 +317,9 @@ def _balance_by_plan(plans: ModuleType) -> Iterator[Check]:
         named = ("residual", "slopes") if name == "balance" else ("work", "work_slopes")
         numbers = (rows, slopes) if name == "balance" else (-rows, slopes[..., :3])
         expected = dict(zip(named, (numbers[0][..., None], numbers[1]), strict=True))
-        told = "steady balance of the nonlinear rotor" + ", without linkages" * is_plain
+        told = f"steady balance of the nonlinear rotor, {kind}"
         yield Check((module, name), told, actual, expected, dict.fromkeys(named, _moment_size()))
-    if is_plain:
+    if kind == PLAIN:
         yield _precone_by_plan()
 
 

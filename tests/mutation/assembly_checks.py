@@ -14,7 +14,16 @@ from proprotor.rotor.fused import of_segments, plans_of, rotor_matrices
 from tests.mutation import one_blade
 from tests.mutation.airload_checks import BEYOND_FLAP, BEYOND_LAG, moments
 from tests.mutation.comparison import Check, matrix_check, values_check
-from tests.mutation.inputs import Quantities, blade_quantities, natural_sizes, points, stacked
+from tests.mutation.inputs import (
+    GENERAL,
+    OFFSET,
+    PLAIN,
+    Quantities,
+    blade_quantities,
+    natural_sizes,
+    points,
+    stacked,
+)
 from tests.mutation.transform import gusts_over_blades, seen_from_blade, summed_over_blades
 
 _SHAFT = 0.4  # rad, like any other
@@ -42,17 +51,17 @@ def checks() -> Iterator[Check]:
     yield values_check(("rotor", "matrices"), told, _quantities(), expected, natural)
     told = "the sum over the blades"
     yield values_check(("rotor", "fixed_frame"), told, _quantities(), expected, natural, *blade.values())
-    yield from _fused("general", ("segment", "in_vacuum"))
-    yield from _fused("plain", ("segment", "of_airloads", "in_vacuum"))
+    yield from _fused(OFFSET, ("segment", "in_vacuum"))
+    yield from _fused(GENERAL, ("segment", "in_vacuum"))
+    yield from _fused(PLAIN, ("segment", "of_airloads", "in_vacuum"))
 
 
 def _fused(kind: str, functions: tuple[str, ...]) -> Iterator[Check]:
     """Checks of the plans of a whole rotor: the same rotors in the air, and without airloads."""
-    plain = kind == "plain"
-    quantities, in_air = _quantities(plain), _rotor(_blade(plain=plain), _sizes(), plain)
+    quantities, in_air = _quantities(kind), _rotor(_blade(kind=kind), _sizes(), kind)
     segments = {name: quantities[name] for name in of_segments(plans_of(quantities))}
-    in_vacuum = _rotor(_blade(with_air=False, plain=plain), _sizes(), plain)
-    told = "the sum over blades of the nonlinear rotor" + ", without linkages" * plain
+    in_vacuum = _rotor(_blade(with_air=False, kind=kind), _sizes(), kind)
+    told = f"the sum over blades of the nonlinear rotor, {kind}"
     for name in functions:
         given, (here, size) = (None, in_vacuum) if name == "in_vacuum" else (segments, in_air)
         actual = functools.partial(rotor_matrices, quantities, given, len(points()))
@@ -100,24 +109,25 @@ def _pulled(place: int, added: dict[str, float]) -> NDArray:
 
 
 @functools.cache
-def _quantities(plain: bool = False) -> Quantities:
+def _quantities(kind: str = OFFSET) -> Quantities:
     """Of the blades (points,) and of their segments (points, segments)."""
     segments = {"beyond_flap_hinge": BEYOND_FLAP, "beyond_lag_hinge": BEYOND_LAG}
-    segments |= stacked(map(moments, points(plain)))
-    added = {} if plain else _ADDED
-    return blade_quantities(plain) | segments | added | {"n_blades": _n_blades()}
+    segments |= stacked(map(moments, points(kind)))
+    added = {} if kind == PLAIN else _ADDED
+    return blade_quantities(kind) | segments | added | {"n_blades": _n_blades()}
 
 
-def _blade(with_structure: bool = True, with_air: bool = True, plain: bool = False) -> dict[str, NDArray]:
+def _blade(with_structure: bool = True, with_air: bool = True, kind: str = OFFSET) -> dict[str, NDArray]:
     """Mass, damping, stiffness (points, 12, 12), gust loads (points, 12, 3) of one blade, or of a part alone."""
     parts = [one_blade.air_matrices] * with_air
     if with_structure:
-        parts += [one_blade.mass_matrices, one_blade.spring_matrices, one_blade.pitch_matrices]
-    sums = [np.sum([part(point) for part in parts], axis=0) for point in points(plain)]
+        parts += [one_blade.mass_matrices, one_blade.offset_matrices]
+        parts += [one_blade.spring_matrices, one_blade.pitch_matrices]
+    sums = [np.sum([part(point) for part in parts], axis=0) for point in points(kind)]
     found = dict(zip(_NAMES, np.moveaxis(np.array(sums), 1, 0), strict=True))
     if not with_structure:
         del found["mass"]
-    return found | {"gusts": with_air * np.array([one_blade.gust_columns(point) for point in points(plain)])}
+    return found | {"gusts": with_air * np.array([one_blade.gust_columns(point) for point in points(kind)])}
 
 
 def _sizes() -> dict[str, NDArray]:
@@ -127,12 +137,12 @@ def _sizes() -> dict[str, NDArray]:
 
 
 def _rotor(
-    blade: dict[str, NDArray], size: dict[str, NDArray], plain: bool = False
+    blade: dict[str, NDArray], size: dict[str, NDArray], kind: str = OFFSET
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """M, C, K, B of the rotors with engine, shaft and cyclic restraint, and the sizes of what is summed."""
     found: dict[str, list[NDArray]] = {name: [] for name in "MCKB"}
     sizes: dict[str, list[NDArray]] = {name: [] for name in "MCKB"}
-    added = dict.fromkeys(_ADDED, 0.0) if plain else _ADDED
+    added = dict.fromkeys(_ADDED, 0.0) if kind == PLAIN else _ADDED
     for place, point in enumerate(points()):
         of_blade, of_size = ([part[name][place] for name in _NAMES] for part in (blade, size))
         given = (FIXED_COORDINATES, point.n_blades, blade_quantities()["rotor_speed"][place], _SHAFT)

@@ -27,12 +27,14 @@ from tests.mutation.inputs import (
 )
 from tests.mutation.one_blade import STEP, Matrices
 
-_NO_LINKAGES = dict.fromkeys(plans.ABSENT, 0.0)  # so that the plans for plain rotors are taken
+# So that the plans for plain rotors are taken.
+_NO_LINKAGES = dict.fromkeys(plans.ABSENT, 0.0) | {"beside_axis": False}
 
 
 def checks() -> Iterator[Check]:
     yield from _mass_integrals()
     yield from _inertia()
+    yield from _beside_axis()
     yield from _springs()
     yield from _pitch()
     yield _couplings()
@@ -70,6 +72,29 @@ def _inertia() -> Iterator[Check]:
     names = [("published.inertia", kind) for kind in kinds]
     told = "kinematics of the nonlinear rotor without what the paper leaves out"
     yield from _of_matrices(names, told, published_quantities(), map(paper_blade.mass_matrices, points()))
+
+
+def _beside_axis() -> Iterator[Check]:
+    """Masses beside the pitch axis."""
+    sums = stacked(map(one_blade.beside_line, points()))
+    told = "sums over point masses beside the axis"
+    yield values_check(("offset_mass", "trim_integrals"), told, blade_quantities(), sums)
+    names = [("offset_mass", kind) for kind in ("mass", "gyroscopic", "centrifugal_stiffness")]
+    told = "accelerations of the nonlinear rotor, with and without its offsets"
+    yield from _of_matrices(names, told, blade_quantities(), map(one_blade.offset_matrices, points()))
+    places = [BLADE_COORDINATES.index(name) for name in ("flap", "lag")]
+    pitch = BLADE_COORDINATES.index("pitch")
+    expected = []
+    for p in points():
+        _, _, stiffness = one_blade.offset_matrices(one_blade.without_linkages(p))
+        moments = stiffness[pitch, places] / p.rotor.control_stiffness
+        expected.append(dict(zip(("pitch_flap_coupling", "pitch_lag_coupling"), moments, strict=True)))
+    sizes = [
+        natural_sizes()[2][:, pitch, place] / blade_quantities()["control_stiffness"] for place in places
+    ]
+    natural = dict(zip(expected[0], sizes, strict=True))
+    names = ("offset_mass", "couplings")
+    yield values_check(names, told, blade_quantities(), stacked(expected), natural)
 
 
 def _springs() -> Iterator[Check]:

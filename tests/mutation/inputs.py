@@ -17,14 +17,20 @@ from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import hinge_spring_energy
 
 Quantities = dict[str, NDArray]
+PLAIN, GENERAL, OFFSET = "plain", "general", "offset"  # fused modules
 SEEDS = (0, 1, 2)  # rotors of three, four and five blades
 
 
 @functools.cache
-def points(plain: bool = False) -> tuple[Point, ...]:
-    """Rotors at a steady state; plain ones have no linkages and no couplings of the pitch."""
+def points(kind: str = OFFSET) -> tuple[Point, ...]:
+    """Rotors at a steady state, of the kind that a fused module serves.
+
+    Those of `GENERAL` have nothing beside the pitch axis, plain ones have no linkages and couplings of pitch either.
+    """
     found = map(Point.random, SEEDS)
-    if plain:
+    if kind != OFFSET:
+        found = map(one_blade.all_on_axis, found)
+    if kind == PLAIN:
         found = (
             replace(one_blade.without_linkages(p), pitch_flap_coupling=0.0, pitch_lag_coupling=0.0)
             for p in found
@@ -39,10 +45,12 @@ def stacked(pools: Iterable[Mapping[str, Any]]) -> Quantities:
 
 
 @functools.cache
-def blade_quantities(plain: bool = False) -> Quantities:
-    """Of the whole blade, (points,); what a plain rotor has not is the plain number zero."""
-    pools = (one_blade.quantities(p) | trim_integrals(p) | spring_constants(p) for p in points(plain))
-    return stacked(pools) | (dict.fromkeys(ABSENT, 0.0) if plain else {})
+def blade_quantities(kind: str = OFFSET) -> Quantities:
+    """Of the whole blade, (points,); what plain rotors have not is the plain number zero."""
+    parts = (one_blade.quantities, one_blade.beside_line, trim_integrals, spring_constants)
+    pools = ({name: value for part in parts for name, value in part(p).items()} for p in points(kind))
+    absent = dict.fromkeys(ABSENT, 0.0) if kind == PLAIN else {}
+    return stacked(pools) | absent | {"beside_axis": kind == OFFSET}
 
 
 @functools.cache

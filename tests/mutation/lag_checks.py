@@ -15,8 +15,17 @@ from tests.mutation.airload_checks import BEYOND_FLAP, BEYOND_LAG
 from tests.mutation.comparison import Check, call, matrix_check, values_check
 from tests.mutation.inputs import Quantities, blade_quantities, points, stacked
 from tests.mutation.one_blade import Point
-from tests.mutation.section_checks import quantities_of, some_air
-from tests.mutation.sections import DERIVATIVES, POLYNOMIAL, STEP, Air, inflow, turn_incidence
+from tests.mutation.section_checks import at_axis, beside_axis, quantities_of, some_air
+from tests.mutation.sections import (
+    DERIVATIVES,
+    POLYNOMIAL,
+    STEP,
+    Air,
+    about_axis,
+    at_center,
+    inflow,
+    turn_incidence,
+)
 from tests.mutation.transform import ONE_BLADE, seen_from_blade
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import DOFS, blades, clock
@@ -29,7 +38,7 @@ _PRODUCTS = ("change_by_rates", "change_by_displacements", "change_by_gusts", "w
 
 
 def checks() -> Iterator[Check]:
-    yield _section()
+    yield from _section()
     yield from _segment()
     yield from _blade()
 
@@ -39,6 +48,7 @@ def checks() -> Iterator[Check]:
 
 def _circulation(air: Air) -> Any:
     """U c_l."""
+    air = at_center(air)
     speed, _, alpha = inflow(air)
     lift, _, _ = POLYNOMIAL.coefficients(alpha + turn_incidence(air), speed / air.speed_of_sound)
     return speed * lift
@@ -46,27 +56,35 @@ def _circulation(air: Air) -> Any:
 
 def _of_sections(air: Air) -> dict[str, NDArray]:
     """Weighed changes of the circulation by complex steps, and the force of the circulation, by name."""
-    speed, angle, _ = inflow(air)
+    speed, angle, _ = inflow(at_center(air))
     weight = speed * air.chord / 2
     found = {"circulation_weight": weight, "circulation_decay": speed**2}
     for name in _CHANGES:
         moved = replace(air, **{DERIVATIVES[name]: getattr(air, DERIVATIVES[name]) + 1j * STEP})
         found[f"circulation_{name}"] = weight * np.imag(_circulation(moved)) / STEP
     force = air.density * weight
-    return found | {"fx_circulation": force * np.sin(angle), "fn_circulation": force * np.cos(angle)}
+    loads = {"fx": force * np.sin(angle), "fn": force * np.cos(angle), "m": 0.0 * force}
+    return found | {f"{name}_circulation": load for name, load in about_axis(air, loads).items()}
 
 
-def _section() -> Check:
+def _section() -> Iterator[Check]:
     air = some_air()
     told = "circulation of a section, by complex steps"
-    return values_check(("lift_lag", "change_of_circulation"), told, quantities_of(air), _of_sections(air))
+    expected = _of_sections(air)
+    del expected["m_circulation"]  # about an axis through the aerodynamic centre there is none
+    yield values_check(("lift_lag", "change_of_circulation"), told, quantities_of(air), expected)
+    air = beside_axis()
+    sees, speed = ("lift_lag", "change_beside_axis"), inflow(air)[0]
+    expected = _of_sections(air)
+    sizes = expected | {"circulation_spin": speed * air.chord**2, "circulation_theta": speed**2 * air.chord}
+    yield values_check(sees, told, at_axis(air), expected, sizes)
 
 
 def _segment() -> Iterator[Check]:
     """Moments as numbers of their own, each at its place."""
     rng = np.random.default_rng(18)
     names = [f"circulation_{name}_0" for name in _CHANGES] + ["circulation_ut_1", "circulation_up_1"]
-    names += [f"{load}_circulation_{power}" for load in _FORCES for power in (0, 1)]
+    names += [f"{load}_circulation_{power}" for load in _FORCES for power in (0, 1)] + ["m_circulation_0"]
     given = dict(zip(names, rng.uniform(1, 2, len(names)), strict=True))
     change = np.zeros((1, 8))
     change[0, [0, 1, 3, 4, 6, 7]] = [
@@ -74,6 +92,7 @@ def _segment() -> Iterator[Check]:
     ]
     load = np.zeros((7, 1))
     load[[0, 1, 3, 4], 0] = [given[f"{of}_circulation_{power}"] for power in (0, 1) for of in _FORCES]
+    load[6, 0] = given["m_circulation_0"]
     told = "places of the moments on a straight segment"
     yield matrix_check(("lift_lag", "change"), told, given, change, 1.0)
     yield matrix_check(("lift_lag", "load"), told, given, load, 1.0)
@@ -99,7 +118,7 @@ def _rows(point: Point, rotor: Any, q: Motion, time: float, drift: Any = 0.0) ->
     """Circulation of the blade in the shape function, in the place of the flap row."""
     r, weight, _ = one_blade.stations(point)
     motion = blades(rotor, r, q, clock(rotor, time))
-    speed, _, _ = inflow(one_blade.trim_air(point))
+    speed, _, _ = inflow(at_center(one_blade.trim_air(point)))
     of_sections = _circulation(one_blade.air_at(point, r, motion, drift))
     whole = (of_sections * weight * _shape(r) * speed * one_blade.trim_air(point).chord / 2).sum((-2, -1))
     rows = np.zeros((*np.shape(whole), len(DOFS)), dtype=complex)
@@ -134,9 +153,9 @@ def _work(point: Point) -> NDArray:
     loads = _of_sections(one_blade.trim_air(point))
     force = loads["fx_circulation"][..., None] * motion.chordwise.value
     force = force + loads["fn_circulation"][..., None] * motion.normal.value
-    still = np.zeros(force.shape[:-1])
+    turning = np.broadcast_to(loads["m_circulation"] * weight * _shape(r), force.shape[:-1])
     rows = assembled(
-        point.rotor, r, Motion(point.trim), 0.0, motion, force * (weight * _shape(r))[:, None], still
+        point.rotor, r, Motion(point.trim), 0.0, motion, force * (weight * _shape(r))[:, None], turning
     )
     back = np.linalg.inv(seen_from_blade(ONE_BLADE, 0.0)[0])
     return (back.T @ rows[[DOFS.index(name) for name in ONE_BLADE]].real)[:, None]
@@ -145,7 +164,7 @@ def _work(point: Point) -> NDArray:
 @functools.cache
 def _quantities() -> Quantities:
     """Of the segments, (points, segments); the geometry is that of the other airloads."""
-    whole = {name: value[:, None] for name, value in blade_quantities().items()}
+    whole = {name: np.asarray(value)[..., None] for name, value in blade_quantities().items()}
     whole |= {"beyond_flap_hinge": BEYOND_FLAP[None], "beyond_lag_hinge": BEYOND_LAG[None]}
     whole |= stacked(map(_moments, points()))
     return whole | call(("airloads", "segment_geometry"), whole)._asdict()

@@ -172,7 +172,7 @@ def _quantities() -> Quantities:
 
 def _of_segments() -> Quantities:
     """Of the segments (points, segments)."""
-    whole = {name: value[:, None] for name, value in _quantities().items()}
+    whole = {name: value[:, None] if np.ndim(value) else value for name, value in _quantities().items()}
     whole |= {"beyond_flap_hinge": BEYOND_FLAP[None], "beyond_lag_hinge": BEYOND_LAG[None]}
     whole |= {"m_0": np.array([m.section_moment for m in _moving()])} | _section_waves()
     chordwise = np.array([[_axes(m, _NONE, s)[0] for s in range(len(BEYOND_FLAP))] for m in _moving()])

@@ -101,9 +101,12 @@ class _State:
 
 def quantities(point: Point) -> dict[str, float]:
     """What generated functions take of the whole blade, by name; mass integrals are sums over the point masses."""
-    given = {k: v for k, v in point.pair.fields.items() if k not in ("airfoil", "chord", "twist")}
-    given |= point.state | hub_couplings(point)
-    given["propeller_moment"] = float(given["propeller_moment"])
+    apart = ("airfoil", "chord", "twist", "aerodynamic_center", "offset_mass", "propeller_inertia")
+    given = {k: v for k, v in point.pair.fields.items() if k not in apart}
+    given |= point.state | hub_couplings(point) | offset_moments(point)
+    rotor = point.rotor
+    given["pitch_inertia"] = rotor.lumped_inertia
+    given["propeller_moment"] = rotor.lumped_propeller_inertia / rotor.lumped_inertia
     given["pitch"] = given["collective"] + given["elastic_pitch"] - turned_by_linkages(point)
     given["structural_pitch"] = given["pitch"] + given["structural_pitch_offset"]
     return given | {
@@ -131,6 +134,15 @@ def without_linkages(point: Point) -> Point:
     return replace(point, rotor=replace(point.rotor, collective=collective, **gone))
 
 
+def all_on_axis(point: Point) -> Point:
+    """The same blade with its masses and aerodynamic centres on the pitch axis."""
+    center = (np.array([0.0, point.air.radius]), np.zeros(2))
+    given = {"mass_offset": 0.0, "propeller_inertia": None}
+    return replace(
+        point, rotor=replace(point.rotor, **given), air=replace(point.air, aerodynamic_center=center)
+    )
+
+
 def arms(point: Point) -> tuple[NDArray, NDArray, NDArray]:
     """r, ρβ and ρζ of the point masses."""
     r, rotor = point.rotor.station, point.rotor
@@ -145,6 +157,38 @@ def hub_couplings(point: Point) -> dict[str, float]:
         "lag_hub_inertia": mass @ (r * lag_arm),
         "flap_lag_inertia": mass @ (flap_arm * lag_arm),
     }
+
+
+def offset_moments(point: Point) -> dict[str, float]:
+    """Integrals of the masses beside the pitch axis, turned by the twist alone."""
+    rotor, (_, _, lag_arm) = point.rotor, arms(point)
+    cosine, sine = rotor.offset * np.cos(rotor.mass_twist), rotor.offset * np.sin(rotor.mass_twist)
+    found = {}
+    for name, x in (("cosine", cosine), ("sine", sine)):
+        found[f"offset_{name}_moment"] = rotor.mass @ x
+        found[f"offset_{name}_lag_inertia"] = rotor.mass @ (x * lag_arm)
+    squares = {"cosine": cosine**2, "product": cosine * sine, "sine": sine**2}
+    return found | {f"offset_{name}_inertia": rotor.mass @ square for name, square in squares.items()}
+
+
+def beside_line(point: Point) -> dict[str, float]:
+    """Sums over the masses beside the pitch axis at trim, by the names of the derivation."""
+    rotor, (r, outboard, lag_arm) = point.rotor, arms(point)
+    angle = rotor.mass_twist + quantities(point)["pitch"]
+    root, cone, lag = rotor.precone, rotor.precone + point.state["coning"], point.state["lag"]
+    inboard, flap_arm = r - outboard, outboard - lag_arm * (1 - np.cos(lag))
+    offsets = {"along": rotor.offset * np.cos(angle), "below": rotor.offset * np.sin(angle)}
+    along = {
+        "radial": np.cos(root) * inboard + np.cos(cone) * flap_arm,
+        "axial": np.sin(root) * inboard + np.sin(cone) * flap_arm,
+        "flap": flap_arm,
+        "lag": lag_arm,
+    }
+    found = {f"{name}_offset_moment": rotor.mass @ x for name, x in offsets.items()}
+    for name, x in offsets.items():
+        found |= {f"{name}_offset_{arm}_inertia": rotor.mass @ (x * length) for arm, length in along.items()}
+        found[f"{name}_offset_inertia"] = rotor.mass @ x**2
+    return found | {"along_below_offset_inertia": rotor.mass @ (offsets["along"] * offsets["below"])}
 
 
 # Matrices in rotating axes
@@ -165,10 +209,33 @@ def without(rotor: NonlinearRotor, *names: str) -> NonlinearRotor:
     )
 
 
+def without_lumped(rotor: NonlinearRotor) -> NonlinearRotor:
+    """The rotor with no pitch inertia but that of the masses beside the axis."""
+    return replace(rotor, pitch_inertia=(rotor.mass * rotor.offset**2).sum())
+
+
+def on_axis(rotor: NonlinearRotor) -> NonlinearRotor:
+    """The rotor with its masses on the pitch axis, and without pitch inertia."""
+    return replace(rotor, mass_offset=0.0, pitch_inertia=0.0)
+
+
+def lumped(rotor: NonlinearRotor) -> NonlinearRotor:
+    """The rotor with its masses on the pitch axis, and the lumped pitch inertia."""
+    given = {"pitch_inertia": rotor.lumped_inertia, "propeller_inertia": rotor.lumped_propeller_inertia}
+    return replace(rotor, mass_offset=0.0, **given)
+
+
 @functools.cache
 def mass_matrices(point: Point) -> Matrices:
-    """Of the point masses alone."""
-    return blade_matrices(inertia_rows, point, without(point.rotor, "pitch_inertia"))
+    """Of the point masses alone, on the pitch axis."""
+    return blade_matrices(inertia_rows, point, on_axis(point.rotor))
+
+
+@functools.cache
+def offset_matrices(point: Point) -> Matrices:
+    """What the point masses have more where they lie beside the axis."""
+    whole = blade_matrices(inertia_rows, point, without_lumped(point.rotor))
+    return tuple(a - b for a, b in zip(whole, mass_matrices(point), strict=True))
 
 
 def spring_matrices(point: Point) -> Matrices:
@@ -181,7 +248,7 @@ def spring_matrices(point: Point) -> Matrices:
 def pitch_matrices(point: Point, *gone: str) -> Matrices:
     """Of pitch inertia, propeller moment, control system, gimbal restraint and dampers."""
     rotor = without(point.rotor, "flap_stiffness", "lag_stiffness", *gone)
-    rotor = replace(rotor, mass=0 * rotor.mass)
+    rotor = replace(lumped(rotor), mass=0 * rotor.mass)
 
     def rows(rotor, q, time):
         return inertia_rows(rotor, q, time) + spring_rows(rotor, q, time) + damper_rows(rotor, q, time)
@@ -216,6 +283,7 @@ def air_at(point: Point, r: NDArray, motion, drift=0.0) -> Air:
         pitch=pitch + np.interp(r, *point.air.twist),
         spin=nose_up_rotation(motion),
         chord=np.interp(r, *point.air.chord),
+        center=np.interp(r, *point.air.aerodynamic_center),
         density=point.air.density,
         speed_of_sound=point.air.speed_of_sound,
     )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from proprotor_equations.fused import plain as plans
+from proprotor_equations.fused import offset, plain
 
 from tests.mutation.comparison import Check, call, matrix_check, values_check
 from tests.mutation.sections import (
@@ -15,6 +17,7 @@ from tests.mutation.sections import (
     STEP,
     Air,
     StraightAirfoil,
+    at_center,
     coefficients_of,
     inflow,
     section_derivatives,
@@ -28,7 +31,9 @@ def checks() -> Iterator[Check]:
     yield from _sections()
     yield from _segment_loads()
     yield _lift_slope()
-    yield _loads_by_plan()
+    yield _loads_by_plan("plain", plain, some_air())
+    yield _loads_by_plan("offset", offset, beside_axis())
+    yield from _beside_axis()
 
 
 def some_air() -> Air:
@@ -90,6 +95,38 @@ def _sections() -> Iterator[Check]:
         yield values_check(("section", function), told, quantities, expected, _sizes(air, wanted))
 
 
+def beside_axis() -> Air:
+    """Sections whose aerodynamic centres lie ahead of the axis and behind it."""
+    return replace(some_air(), center=np.random.default_rng(9).uniform(-0.2, 0.2, _COUNT))
+
+
+def at_axis(air: Air) -> dict[str, NDArray]:
+    """Quantities of sections by the names of the derivation, with what the aerodynamic centre meets."""
+    below, along = (air.center * wave(air.pitch) for wave in (np.sin, np.cos))
+    named = {"tangential_velocity": air.tangential, "axial_velocity": air.axial}
+    of_center = {"aerodynamic_center": air.center, "center_along": along, "center_below": below}
+    met = at_center(air)
+    velocities = {"tangential_at_center": met.tangential, "axial_at_center": met.axial}
+    return quantities_of(met) | named | of_center | velocities
+
+
+def _beside_axis() -> Iterator[Check]:
+    """Aerodynamic centres beside the pitch axis."""
+    air = beside_axis()
+    quantities, told = (
+        at_axis(air),
+        "velocities and forces of a point of a section that turns, by complex steps",
+    )
+    names = ("center_along", "center_below", "tangential_at_center", "axial_at_center", "section_speed")
+    names += ("inflow_cosine", "inflow_sine", "angle_of_attack", "turn_incidence", "lift_incidence", "mach")
+    expected = {name: quantities[name] for name in names}
+    yield values_check(("section", "air_beside_axis"), told, quantities, expected)
+    own = section_derivatives(POLYNOMIAL, at_center(air))
+    given = quantities | {f"{name}_at_center": load for name, load in own.items()}
+    expected = section_derivatives(POLYNOMIAL, air)
+    yield values_check(("section", "about_axis"), told, given, expected, _sizes(air, expected))
+
+
 def _sizes(air: Air, names: Iterable[str]) -> dict[str, NDArray]:
     """Of loads and derivatives where coefficients, angles and speeds relative to the section's are of order one."""
     speed, _, _ = inflow(air)
@@ -98,18 +135,19 @@ def _sizes(air: Air, names: Iterable[str]) -> dict[str, NDArray]:
     return {name: force * per.get(name.partition("_")[2], 1.0) for name in names}
 
 
-def _loads_by_plan() -> Check:
+def _loads_by_plan(kind: str, plans: ModuleType, air: Air) -> Check:
     """Loads of a section with a straight lift line, and powers of the chord with values of their own."""
-    air, airfoil, powers = some_air(), StraightAirfoil(), (1.07, 1.21)
+    airfoil, powers = StraightAirfoil(), (1.07, 1.21)
     found = section_derivatives(airfoil, air, powers=powers)
     expected = {name: load for name, load in found.items() if name in plans.SECTION_LOADS}
     size = _sizes(air, expected) | dict.fromkeys(("lift_incidence", "mach"), 1.0)
-    speed, _, alpha = inflow(air)
+    met = at_center(air)
+    speed, _, alpha = inflow(met)
     expected |= {
-        "lift_incidence": alpha + powers[0] * turn_incidence(air),
+        "lift_incidence": alpha + powers[0] * turn_incidence(met),
         "mach": speed / air.speed_of_sound,
     }
-    quantities = quantities_of(air) | {
+    quantities = at_axis(air) | {
         "lift_slope": airfoil.lift_slope,
         "zero_lift_angle": airfoil.zero_lift_angle,
         "drag_coefficient": airfoil.drag,
@@ -120,11 +158,11 @@ def _loads_by_plan() -> Check:
 
     def actual() -> dict[str, NDArray]:
         into = np.empty((len(plans.SECTION_LOADS), _COUNT))
-        call(("fused.plain", "section_loads"), quantities, into)
+        call((f"fused.{kind}", "section_loads"), quantities, into)
         return dict(zip(plans.SECTION_LOADS, into, strict=True))
 
     told = "lift, drag and moment of a section, by complex steps"
-    return Check(("fused.plain", "section_loads"), told, actual, expected, size)
+    return Check((f"fused.{kind}", "section_loads"), told, actual, expected, size)
 
 
 def _segment_loads() -> Iterator[Check]:
@@ -132,7 +170,7 @@ def _segment_loads() -> Iterator[Check]:
     rng = np.random.default_rng(6)
     r, weight = rng.uniform(0.5, 3.5, _COUNT), rng.uniform(0.1, 0.3, _COUNT)
     forces, velocities = ("fx", "fn", "fd"), ("ut", "up", "ur")
-    absent = {"fx_ur", "fn_ur", "m_ur", "fd_spin"}  # no section load depends on these
+    absent = {"fx_ur", "fn_ur", "m_ur"}  # no section load depends on these
     names = [f"{load}_{motion}" for load in (*forces, "m") for motion in (*velocities, "theta", "spin")]
     along: dict[str, Any] = {n: 0 * r if n in absent else rng.uniform(1, 2, _COUNT) for n in names}
     along |= {load: rng.uniform(1, 2, _COUNT) for load in (*forces, "m")}

@@ -16,7 +16,10 @@ DERIVATIVES = {"ut": "tangential", "up": "axial", "ur": "radial", "theta": "pitc
 
 @dataclass(frozen=True)
 class Air:
-    """What a section is and meets: velocities u_T, u_P, u_R, its pitch, and its rotation about the span, nose up."""
+    """What a section is and meets: velocities u_T, u_P, u_R, its pitch, and its rotation about the span, nose up.
+
+    Velocities are those of the pitch axis, `center` aft of which the aerodynamic centre lies.
+    """
 
     tangential: Any
     axial: Any
@@ -26,6 +29,7 @@ class Air:
     chord: Any
     density: Any
     speed_of_sound: Any
+    center: Any = 0.0
 
     def mapped(self, function: Callable) -> Air:
         """The same with a function applied to every number."""
@@ -72,6 +76,18 @@ def turn_incidence(air: Air, damped: float = 1.0) -> Any:
     return damped * air.spin * air.chord / 2 / inflow(air)[0]
 
 
+def at_center(air: Air) -> Air:
+    """What the aerodynamic centre meets: nose up, its section's turn moves it ahead and down where it lies aft."""
+    ahead, down = (air.center * wave(air.pitch) * air.spin for wave in (np.sin, np.cos))
+    return replace(air, tangential=air.tangential + ahead, axial=air.axial - down, center=0.0 * air.center)
+
+
+def about_axis(air: Air, loads: dict[str, Any]) -> dict[str, Any]:
+    """Loads about the pitch axis of loads at the aerodynamic centre: along i' and against n it has two levers."""
+    aft, below = (air.center * wave(air.pitch) for wave in (np.cos, np.sin))
+    return loads | {"m": loads["m"] - aft * loads["fn"] - below * loads["fx"]}
+
+
 def section_loads(
     airfoil: PolynomialAirfoil | StraightAirfoil,
     air: Air,
@@ -85,18 +101,20 @@ def section_loads(
     `powers` are what stands for c² and c³, over the square and the cube of the chord.
     """
     square, cube = powers
+    whole, air = air, at_center(air)
     speed, angle, alpha = inflow(air)
     mach = speed / air.speed_of_sound
     _, drag, moment = airfoil.coefficients(alpha, mach)
     lift, _, _ = airfoil.coefficients(alpha + square * turn_incidence(air, damped), mach)
     area = 0.5 * air.density * air.chord
-    return {
+    loads = {
         "fx": area * speed**2 * (lift * np.sin(angle) + drag * np.cos(angle)),
         "fn": area * speed**2 * (lift * np.cos(angle) - drag * np.sin(angle)),
         "fd": -area * speed * drag * air.radial,
         "m": area * square * air.chord * speed**2 * moment
         - damped * np.pi / 8 * air.density * cube * air.chord**3 * speed * air.spin,
     }
+    return about_axis(whole, loads)
 
 
 def section_derivatives(
@@ -116,6 +134,7 @@ def section_derivatives(
 
 def coefficients_of(airfoil: PolynomialAirfoil, air: Air) -> dict[str, NDArray]:
     """Coefficients of a section that turns and their derivatives, by the names of the derivation."""
+    air = at_center(air)
     speed, _, alpha = inflow(air)
     mach, turned = speed / air.speed_of_sound, alpha + turn_incidence(air)
     steps = {"": (0.0, 0.0), "_alpha": (1j * STEP, 0.0), "_mach": (0.0, 1j * STEP)}

@@ -8,7 +8,7 @@ import numpy as np
 
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import HUB_FORCE, UNIT, blades, clock
-from tests.oracles.virtual_work import assembled, quadrature, section_flow
+from tests.oracles.virtual_work import about_axis, assembled, quadrature, section_flow
 
 STEP = 1e-30
 AZIMUTHS = 4  # enough for the harmonics -1, 0 and 1
@@ -42,9 +42,8 @@ def what_lag_adds(air, rotor, trim, s, order=14):
         loads = np.zeros((len(station), rotor.n_blades, len(station), 3))
         every = np.arange(len(station))
         loads[every, 0, every] = force[:, None] * direction  # of the first blade, a section at a time
-        works.append(
-            assembled(rotor, station, Motion(trim), time, steady, loads, np.zeros(loads.shape[:-1])).real
-        )
+        turning = about_axis(air, station, steady, loads).real
+        works.append(assembled(rotor, station, Motion(trim), time, steady, loads, turning).real)
         for found, moved in (
             (rates, Motion(trim, 1j * STEP * UNIT)),
             (displacements, Motion(trim + 1j * STEP * UNIT)),

@@ -5,11 +5,11 @@ from `motion`. Blade angles are those of a multiblade transform, q0 + q1c cos ψ
 equations have constant coefficients once linearised (tested, not assumed).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.oracles.motion import Motion, cos, dot, sin, turned, vector
+from tests.oracles.motion import Motion, cos, dot, scaled, sin, turned, vector
 
 DOFS = (
     *("x", "y", "z", "alpha_x", "alpha_y", "alpha_z"),
@@ -52,6 +52,24 @@ class NonlinearRotor:
     kinematic_pitch_flap_coupling: float = 0.0
     kinematic_pitch_lag_coupling: float = 0.0
     cyclic_control_stiffness: float | None = None  # of one blade; as that of the collective by default
+    mass_offset: np.ndarray | float = 0.0  # of each point mass beyond the lag hinge, aft of the pitch axis
+    mass_twist: np.ndarray | float = 0.0  # at each point mass, from three quarters of the radius
+    propeller_inertia: float | None = None  # as the pitch inertia by default
+
+    @property
+    def offset(self):
+        """Distance of each point mass from the pitch axis: those inboard of the lag hinge lie on it."""
+        return np.where(self.station > self.lag_hinge_offset, self.mass_offset, 0.0)
+
+    @property
+    def lumped_inertia(self):
+        """Pitch inertia that the point masses beside the axis do not have themselves."""
+        return self.pitch_inertia - (self.mass * self.offset**2).sum()
+
+    @property
+    def lumped_propeller_inertia(self):
+        whole = self.pitch_inertia if self.propeller_inertia is None else self.propeller_inertia
+        return self.propeller_moment * (whole - (self.mass * self.offset**2).sum())
 
 
 @dataclass(frozen=True)
@@ -138,6 +156,21 @@ def blades(rotor, station, q, shaft):
     )
 
 
+def beside_axis(motion, aft, twist):
+    """From the pitch axis to points `aft` of it, on chords turned nose up by pitch and `twist`."""
+    section_pitch = motion.pitch + twist
+    return scaled(aft * cos(section_pitch), motion.chordwise) - scaled(
+        aft * sin(section_pitch), motion.normal
+    )
+
+
+def masses(rotor, q, shaft):
+    """Kinematics of the point masses."""
+    motion = blades(rotor, rotor.station, q, shaft)
+    beside = beside_axis(motion, rotor.offset, rotor.mass_twist)
+    return replace(motion, position=motion.position + beside, arm=motion.arm + beside)
+
+
 def virtual_displacements(rotor, station, q, time):
     """Blades whose rates are the derivatives by each generalised coordinate, on an axis before the blades."""
     return blades(rotor, station, virtual_motion(q), clock(rotor, time, running=False))
@@ -153,7 +186,7 @@ def spring_energy(rotor, motion, coordinates):
     gimbal = coordinates[..., GIMBAL_C : GIMBAL_S + 1]
     hinges = hinge_spring_energy(rotor, motion.flap, motion.lag, motion.pitch + rotor.structural_pitch_offset)
     control = 0.5 * rotor.control_stiffness * motion.elastic_pitch * motion.elastic_pitch
-    propeller_stiffness = rotor.propeller_moment * rotor.pitch_inertia * rotor.rotor_speed**2
+    propeller_stiffness = rotor.lumped_propeller_inertia * rotor.rotor_speed**2
     propeller = 0.5 * propeller_stiffness * sin(motion.pitch) * sin(motion.pitch)
     blades_and_gimbal = over_blades(hinges + control + propeller) + 0.5 * rotor.gimbal_stiffness * dot(
         gimbal, gimbal
@@ -200,10 +233,10 @@ def over_blades(scalar):
 def lagrangian(rotor, q, q_rate, time):
     """L = T − U of the whole rotor at coordinates q and rates q_rate (..., 18)."""
     coordinates = Motion(q, q_rate)
-    motion = blades(rotor, rotor.station, coordinates, clock(rotor, time))
+    motion = masses(rotor, coordinates, clock(rotor, time))
     velocity, pitch_rate = motion.position.rate, motion.shaft_pitch.rate
     kinetic = 0.5 * ((velocity**2).sum(-1) * rotor.mass).sum((-2, -1))
-    pitching = 0.5 * rotor.pitch_inertia * (pitch_rate**2).sum((-2, -1))
+    pitching = 0.5 * rotor.lumped_inertia * (pitch_rate**2).sum((-2, -1))
     return kinetic + pitching - spring_energy(rotor, motion, coordinates).value
 
 
@@ -263,13 +296,13 @@ def inertia_rows(rotor, q, time):
 
     The lumped pitch inertia takes part where the shaft-relative pitch does, and never on the hub.
     """
-    motion = blades(rotor, rotor.station, q, clock(rotor, time))
+    motion = masses(rotor, q, clock(rotor, time))
     inertia_force = rotor.mass[:, None] * motion.position.acceleration
-    pitching_moment = rotor.pitch_inertia * motion.shaft_pitch.acceleration
+    pitching_moment = rotor.lumped_inertia * motion.shaft_pitch.acceleration
     rows = np.zeros((*inertia_force.shape[:-3], len(DOFS)), dtype=complex)
     rows[..., HUB_FORCE] = inertia_force.sum((-3, -2))
     rows[..., HUB_MOMENT] = np.cross(motion.arm.value, inertia_force).sum((-3, -2))
-    virtual = virtual_displacements(rotor, rotor.station, q.value, time)
+    virtual = masses(rotor, virtual_motion(q.value), clock(rotor, time, running=False))
     work = (inertia_force[..., None, :, :, :] * virtual.position.rate).sum((-3, -2, -1))
     pitching_work = (pitching_moment[..., None, :, :] * virtual.shaft_pitch.rate).sum((-2, -1))
     rows[..., GENERALISED] = work + pitching_work

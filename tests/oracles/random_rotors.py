@@ -12,6 +12,7 @@ from tests.oracles.nonlinear_rotor import NonlinearRotor, trim_coordinates
 from tests.oracles.virtual_work import Aerodynamics
 
 SPEED_OF_SOUND = 340.3
+NO_OFFSETS = {"mass_offset": 0.0, "aerodynamic_center": 0.0, "propeller_inertia": None}
 NO_LINKAGES = dict.fromkeys(("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling"), 0.0)
 
 
@@ -23,6 +24,7 @@ class Pair:
     fields: dict  # of the rotor, as given to the package
     station: np.ndarray
     mass: np.ndarray
+    offset: np.ndarray  # of the masses, aft of the pitch axis
     rotor_speed: float
 
     def oracle(self, trim):
@@ -32,15 +34,24 @@ class Pair:
             **{name: self.fields[name] for name in names},
             station=self.station,
             mass=self.mass,
+            mass_offset=self.offset,
+            mass_twist=self.twist_at(self.station),
             rotor_speed=self.rotor_speed,
             collective=float(trim.collective),
         )
         return rotor, trim_coordinates(float(trim.coning), float(trim.lag), float(trim.elastic_pitch))
 
+    @property
+    def twist(self):
+        """A table (radius, value) from three quarters of the radius."""
+        return twist_from_reference(self.fields["twist"], self.fields["radius"])
+
+    def twist_at(self, station):
+        return np.interp(station, *self.twist)
+
     def air(self, airspeed, density, compressibility=True, section_damping=True):
         airfoil, radius = self.fields["airfoil"], self.fields["radius"]
         regions = isinstance(airfoil, pp.AirfoilRegions)
-        station, twist = tabulated(self.fields["twist"], radius, linear=True)
         return Aerodynamics(
             airspeed=airspeed,
             density=density,
@@ -48,7 +59,8 @@ class Pair:
             radius=radius,
             root_cutout=self.fields["root_cutout"],
             chord=tabulated(self.fields["chord"], radius),
-            twist=(station, twist - np.interp(0.75 * radius, station, twist)),
+            twist=self.twist,
+            aerodynamic_center=tabulated(self.fields["aerodynamic_center"], radius),
             **(of_regions(airfoil, radius) if regions else vars(airfoil)),
             compressibility=compressibility,
             section_damping=section_damping,
@@ -60,6 +72,28 @@ def tabulated(given, radius, linear=False):
     if isinstance(given, tuple):
         return given
     return np.array([0.0, radius]), given * np.array([0.0 if linear else 1.0, 1.0])
+
+
+def twist_from_reference(given, radius):
+    """The twist as a table (radius, value) that is zero at three quarters of the radius."""
+    station, twist = tabulated(given, radius, linear=True)
+    return station, twist - np.interp(0.75 * radius, station, twist)
+
+
+def offset_mass(station, mass, offset, twist, lag_hinge_offset):
+    """The integrals of masses beside the axis, of those beyond the lag hinge."""
+    lag_arm = np.maximum(station - lag_hinge_offset, 0.0)
+    x = np.where(lag_arm > 0, offset, 0.0)
+    cosine, sine = x * np.cos(twist), x * np.sin(twist)
+    return pp.OffsetMass(
+        offset_cosine_moment=mass @ cosine,
+        offset_sine_moment=mass @ sine,
+        offset_cosine_lag_inertia=mass @ (cosine * lag_arm),
+        offset_sine_lag_inertia=mass @ (sine * lag_arm),
+        offset_cosine_inertia=mass @ cosine**2,
+        offset_product_inertia=mass @ (cosine * sine),
+        offset_sine_inertia=mass @ sine**2,
+    )
 
 
 def of_regions(airfoils, radius):
@@ -130,7 +164,17 @@ def random_rotor(seed, n_blades=None, tables=False, **changes):
     linkages = np.random.default_rng([seed, 3])
     given["kinematic_pitch_flap_coupling"] = linkages.uniform(0.1, 0.5)
     given["kinematic_pitch_lag_coupling"] = linkages.uniform(-0.4, -0.1)
+    beside = np.random.default_rng([seed, 4])
+    given["mass_offset"] = beside.uniform(-0.03, 0.06, len(mass))  # of the masses, aft of the pitch axis
+    given["aerodynamic_center"] = beside.uniform(0.01, 0.03)
+    given["propeller_inertia"] = beside.uniform(0.7, 0.95) * given["pitch_inertia"]
+    if tables:
+        given["aerodynamic_center"] = (np.array([0.0, 0.5, 1.0]) * radius, np.array([-0.02, 0.03, 0.01]))
     given |= changes
+    offset = given.pop("mass_offset") + 0 * mass
     given |= mass_integrals(station, mass, given["flap_hinge_offset"], given["lag_hinge_offset"])
+    if offset.any():
+        twist = np.interp(station, *twist_from_reference(given["twist"], radius))
+        given["offset_mass"] = offset_mass(station, mass, offset, twist, given["lag_hinge_offset"])
     rotor_speed = rng.uniform(40.0, 55.0)
-    return Pair(pp.Rotor(**given), given, station, mass, rotor_speed)
+    return Pair(pp.Rotor(**given), given, station, mass, offset, rotor_speed)

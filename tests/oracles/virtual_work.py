@@ -16,6 +16,7 @@ from tests.oracles.nonlinear_rotor import (
     HUB_FORCE,
     HUB_MOMENT,
     NonlinearRotor,
+    beside_axis,
     blades,
     clock,
     virtual_displacements,
@@ -43,6 +44,11 @@ class Aerodynamics:
     compressibility: bool = True
     section_damping: bool = True
     joints: tuple = ()
+    aerodynamic_center: tuple = ((0.0, 1.0), (0.0, 0.0))  # aft of the pitch axis, a table like the chord
+
+    def center(self, station):
+        """How far aft of the pitch axis the aerodynamic centre lies, and the twist of its chord."""
+        return np.interp(station, *self.aerodynamic_center), np.interp(station, *self.twist)
 
     def along(self, station, value_of):
         """The sum over all regions of `value_of` a region's number, times the region's share at the stations."""
@@ -74,9 +80,8 @@ def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
     Fourteen points integrate the smooth panels to rounding; the nearest singularities (V/Ω off the real axis,
     and sonic speed) are about a panel length away.
     """
-    corners = {rotor.flap_hinge_offset, rotor.lag_hinge_offset, *air.chord[0], *air.twist[0]}.union(
-        *air.joints
-    )
+    tables = (air.chord[0], air.twist[0], air.aerodynamic_center[0])
+    corners = {rotor.flap_hinge_offset, rotor.lag_hinge_offset}.union(*tables, *air.joints)
     edges = [air.root_cutout, *sorted(c for c in corners if air.root_cutout < c < air.radius), air.radius]
     node, weight = np.polynomial.legendre.leggauss(order)
     middle, half = (np.add(edges[1:], edges[:-1]) / 2)[:, None], (np.diff(edges) / 2)[:, None]
@@ -85,10 +90,10 @@ def quadrature(air: Aerodynamics, rotor: NonlinearRotor, order=14):
 
 @dataclass(frozen=True)
 class Flow:
-    """The flow a section meets: speed U and inflow angle φ across the span, u_R along it, at the quarter chord.
+    """The flow a section meets: speed U and inflow angle φ across the span, at its quarter chord.
 
-    The section's rotation about the span moves its 3/4 chord, half a chord aft, down through the air: the incidence
-    there makes the lift.
+    u_R, along the span, is that of the pitch axis, where the radial drag acts. The section's rotation about the span
+    moves its 3/4 chord, half a chord aft, down through the air: the incidence there makes the lift.
     """
 
     speed: np.ndarray
@@ -100,12 +105,24 @@ class Flow:
     prandtl_glauert: np.ndarray | float
 
 
+def to_center(air, station, motion):
+    """From the pitch axis to the aerodynamic centre of every section."""
+    return beside_axis(motion, *air.center(station))
+
+
+def about_axis(air, station, motion, force):
+    """Nose-up moment about the pitch axis of forces at the aerodynamic centre."""
+    moment = np.cross(to_center(air, station, motion).value, force)
+    return (moment * motion.spanwise.value).sum(-1)
+
+
 def section_flow(air, station, motion):
     """φ is written arctan(u_P/u_T), half a turn on where the flow comes from behind: atan2, and analytic."""
-    velocity = motion.position.rate + air.airspeed * np.array([0.0, 0.0, 1.0])
+    axis = motion.position.rate + air.airspeed * np.array([0.0, 0.0, 1.0])
+    velocity = axis + to_center(air, station, motion).rate
     u_T = -(velocity * motion.chordwise.value).sum(-1)
     u_P = (velocity * motion.normal.value).sum(-1)
-    u_R = (velocity * motion.spanwise.value).sum(-1)
+    u_R = (axis * motion.spanwise.value).sum(-1)
     assert ((u_T.real > 0) | (u_P.real > 0)).all(), "reversed flow"
     speed, inflow = np.sqrt(u_T**2 + u_P**2), np.arctan(u_P / u_T) + np.pi * (u_T.real < 0)
     mach = speed / air.speed_of_sound
@@ -134,13 +151,13 @@ def section_loads(air, station, motion):
     )
     lift, drag = pressure_chord * lift_coefficient, pressure_chord * drag_coefficient
     radial_drag = 0.5 * air.density * chord * flow.speed * drag_coefficient * flow.radial
-    force = (
-        scaled(lift * np.sin(flow.inflow) + drag * np.cos(flow.inflow), motion.chordwise.value)
-        + scaled(lift * np.cos(flow.inflow) - drag * np.sin(flow.inflow), motion.normal.value)
-        - scaled(radial_drag, motion.spanwise.value)
-    )
+    at_center = scaled(
+        lift * np.sin(flow.inflow) + drag * np.cos(flow.inflow), motion.chordwise.value
+    ) + scaled(lift * np.cos(flow.inflow) - drag * np.sin(flow.inflow), motion.normal.value)
     resistance = np.pi / 8 * air.density * chord**3 * flow.speed * flow.rotation
-    return force, pressure_chord * chord * moment_coefficient * flow.prandtl_glauert - resistance
+    moment = pressure_chord * chord * moment_coefficient * flow.prandtl_glauert - resistance
+    force = at_center - scaled(radial_drag, motion.spanwise.value)
+    return force, moment + about_axis(air, station, motion, at_center)
 
 
 def lift_slope_loads(air, station, motion, trim):
@@ -151,7 +168,7 @@ def lift_slope_loads(air, station, motion, trim):
     lift = 0.5 * air.density * chord * flow.speed**2 * lift_slope * flow.prandtl_glauert * change
     chordwise, normal = motion.chordwise.value, motion.normal.value
     force = scaled(lift * np.sin(flow.inflow), chordwise) + scaled(lift * np.cos(flow.inflow), normal)
-    return force, 0.0 * lift
+    return force, about_axis(air, station, trim, force)
 
 
 def nose_up_rotation(motion):
@@ -174,7 +191,7 @@ def lift_slope_rows(air, rotor, trim, q, time):
     shaft = clock(rotor, time)
     motion, steady = (blades(rotor, station, state, shaft) for state in (q, Motion(trim)))
     force, moment = lift_slope_loads(air, station, motion, steady)
-    return -assembled(rotor, station, q, time, motion, force * weight[:, None], moment)
+    return -assembled(rotor, station, q, time, motion, force * weight[:, None], moment * weight)
 
 
 def assembled(rotor, station, q, time, motion, force, moment):

@@ -21,6 +21,14 @@ CASE = pp.load_case("xv15-uncoupled")
 OF_SAMPLE = pp.sampling.saltelli({PRECONE: (0.02, 0.06), "rotor.control_stiffness": (11e3, 20e3)}, 2)
 
 
+def with_envelope():
+    """The same deck with an envelope."""
+    altitudes = '{ value = [0, 1], unit = "km" }'
+    return pp.load_case(
+        "xv15-uncoupled", {"envelope.dive_speed": "180 keas", "envelope.altitudes": altitudes}
+    )
+
+
 @pytest.fixture(scope="module")
 def results():
     """A result of each kind, small."""
@@ -33,6 +41,8 @@ def results():
         "indices": pp.sobol_indices(sampled, beyond="limit"),
         "stability map": CASE.stability_map(axes),
         "boundaries": CASE.boundary_against({PRECONE: [0.02, 0.05]}, "300:440:20kt"),
+        "growth constraint": CASE.growth_constraint("100:140:20kt", [PRECONE]),
+        "envelope": with_envelope().envelope("150:240:45keas"),
         "sensitivity": CASE.sensitivity("damping", [PRECONE], airspeed="300 kt", mode="beam"),
         "attribution": CASE.attribution("300 kt"),
     }
@@ -45,6 +55,8 @@ KINDS = (
     "indices",
     "stability map",
     "boundaries",
+    "growth constraint",
+    "envelope",
     "sensitivity",
     "attribution",
 )
@@ -66,7 +78,7 @@ def test_every_plot_that_it_offers_can_be_drawn(results, kind):
         assert name in dir(accessor)
         assert isinstance(getattr(accessor, name)(*own.get(name, [])), Axes | Figure)
     pyplot.close("all")
-    assert accessor.plots or kind == "distribution"
+    assert accessor.plots or kind in ("distribution", "growth constraint")
     if kind == "sweep":
         assert isinstance(accessor.plot(), Figure)
         assert accessor.plot_damping(unit="m/s").get_xlabel() != accessor.plot_damping().get_xlabel()

@@ -41,6 +41,7 @@ from proprotor.stability.modes import modes
 from proprotor.stability.sensitivity import sensitivity
 from proprotor.stability.sweep import sweep_case
 from proprotor.study import mode_damping
+from tests.measured_point import measured_point
 
 # All functions and classes of these are public, and of others those that are named.
 MODULES: tuple[ModuleType, ...] = (
@@ -282,13 +283,26 @@ def case() -> pp.Case:
     return pp.load_case("xv15-uncoupled")
 
 
+def with_envelope(case: pp.Case) -> pp.Case:
+    """The deck of a case with an envelope."""
+    altitudes = '{ value = [0, 1], unit = "km" }'
+    return pp.load_case(case.name, {"envelope.dive_speed": "200 keas", "envelope.altitudes": altitudes})
+
+
 # How each function with options of the model is called.
+LOOP = pp.ControlLoop(name="hold", sensors="x rate", inputs="cyclic_1c", gain=-1e-3)
 WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "Case.linearize": lambda case, **more: case.linearize(150.0, **more),
+    "Case.open_loop": lambda case, **more: case.open_loop(150.0, **more),
+    "Case.margins": lambda case, **more: case.with_control(LOOP).margins([150.0], **more),
     "Case.sweep": lambda case, **more: case.sweep(SPEEDS, **more),
     "Case.boundaries": lambda case, **more: case.boundaries(SPEEDS, **more),
     "Case.flutter_point": lambda case, **more: case.flutter_point(SPEEDS, **more),
     "Case.sensitivity": lambda case, **more: case.sensitivity(airspeed=SPEEDS, **more),
+    "Case.envelope": lambda case, **more: with_envelope(case).envelope(SPEEDS, **more),
+    "envelope": lambda case, **more: pp.envelope(with_envelope(case), SPEEDS, **more),
+    "Case.growth_constraint": lambda case, **more: case.growth_constraint(SPEEDS, (), **more),
+    "growth_constraint": lambda case, **more: pp.growth_constraint(case, SPEEDS, (), **more),
     "Case.attribution": lambda case, **more: case.attribution(150.0, **more),
     "Case.stability_map": lambda case, **more: case.stability_map(AXES, **more),
     "Case.around": lambda case, **more: case.around(150.0, shaft_angle=0.05, **more),
@@ -298,6 +312,7 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     ),
     "rotor_model": lambda case, **more: pp.rotor_model(case.rotor, case.operation, 150.0, **more),
     "study": lambda case, **more: pp.study(case, {"rotor.precone": [0.01]}, 150.0, **more),
+    "calibrate": lambda case, **more: pp.calibrate(case, measured_point(), ["rotor.precone"], **more),
     "attribution.attribution": lambda case, **more: attribution(case, 150.0, **more),
     "boundary_lines.boundary_lines": lambda case, **more: boundary_lines(
         case, case.stability_map(AXES, airloads="none"), **more
@@ -356,7 +371,7 @@ def test_an_unknown_keyword_is_refused(name):
     if name in OTHER_KEYWORDS:
         with pytest.raises(TypeError, match="precne"):
             OTHER_KEYWORDS[name](precne=0.1)
-    elif name == "openmdao.WhirlFlutter":
+    elif name in ("openmdao.WhirlFlutter", "openmdao.GrowthConstraint"):
         with pytest.raises((KeyError, TypeError)):  # options that OpenMDAO keeps
             entry(no_such_keyword=1)
     else:
@@ -365,9 +380,10 @@ def test_an_unknown_keyword_is_refused(name):
         assert not takes_any_keyword(entry)
 
 
-def test_the_options_of_the_component_are_those_it_documents():
-    told = documented(docstring(openmdao.WhirlFlutter)["Parameters"])
-    own = set(openmdao.WhirlFlutter().options._dict)
+@pytest.mark.parametrize("component", [openmdao.WhirlFlutter, openmdao.GrowthConstraint])
+def test_the_options_of_a_component_are_those_it_documents(component):
+    told = documented(docstring(component)["Parameters"])
+    own = set(component().options._dict)
     assert set(told) <= own
     assert own - set(told) == {
         name for name in own if name in set(openmdao.om.ExplicitComponent().options._dict)

@@ -304,3 +304,41 @@ def test_a_failed_write_leaves_what_was_there(tmp_path, monkeypatch):
     assert "No space left on device" in result.stderr
     assert place.read_text(encoding="utf-8") == "as it was"
     assert list(tmp_path.iterdir()) == [place]
+
+
+def test_the_envelope_of_a_deck_stands_there(tmp_path):
+    deck = """
+base = "xv15-uncoupled"
+[case]
+name = "wing"
+title = "A wing"
+[envelope]
+dive_speed = "260 keas"
+altitudes = { value = [0, 15000], unit = "ft" }
+[variants.soft]
+rotor.control_stiffness = "5400 N*m/rad"
+"""
+    (tmp_path / "wing.toml").write_text(deck)
+    run(tmp_path / "wing.toml", "--speed", SPEEDS, "--out", tmp_path / "wing.html")
+    page = Page((tmp_path / "wing.html").read_text())
+    found = pp.load_case(tmp_path / "wing.toml").envelope()
+    (rows,) = [
+        rows for caption, rows in page.tables.items() if caption.startswith("Each condition at its worst")
+    ]
+    assert [row[-1] for row in rows[1:]] == ["as the deck", "soft"] == found.condition.values.tolist()
+    margins = [float(row[rows[0].index("margin")]) for row in rows[1:]]
+    np.testing.assert_allclose(margins, 100 * found.margin.min("altitude").values.ravel(), atol=0.051)
+    assert "one part of what a showing of compliance needs" in page.text
+    assert any("Lines of the onset of as the deck, soft" in picture["alt"] for picture in page.pictures)
+
+
+def test_an_envelope_that_cannot_be_found_is_told(tmp_path):
+    settings = (
+        "--set",
+        "envelope.dive_speed=260 keas",
+        "--set",
+        'envelope.altitudes={value=[0, 40], unit="km"}',
+    )
+    run("xv15-uncoupled", "--speed", SPEEDS, "--out", tmp_path / "a.html", *settings)
+    text = Page((tmp_path / "a.html").read_text()).text
+    assert "The envelope could not be found: altitude = 40000 m: must lie between" in text

@@ -193,7 +193,11 @@ def test_a_very_soft_spring_is_none(name):
 @any_rotor
 @given(flights(hinges="at centre"), seeds)
 def test_what_moves_the_blade_as_another_coordinate_does_is_told(flight, seed):
-    """Flapping about the centre is the gimbal's tilt, and lagging about it is the rotor's turning, once more."""
+    """Flapping about the centre is the gimbal's tilt, and lagging about it is the rotor's turning, once more.
+
+    So it is with masses on the pitch axis: those beside it feel the turn of a section as well.
+    """
+    flight = flight.with_rotor(offset_mass=None)
     support = random_support(flight, seed)
     whole, constant, hinged, both = (
         flight.on(support, **options)

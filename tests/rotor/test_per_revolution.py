@@ -60,9 +60,9 @@ def roots(case):
 def test_these_are_all_the_fields_that_take_a_frequency():
     fields = {field.path for field in deck_fields() if field.form == "frequency"}
     of_wing = {f"support.{kind}_frequency" for kind in ("beam", "chord", "torsion")}
-    assert (
-        fields == {"rotor.flap_frequency", "rotor.lag_frequency", "support.modes[NAME].frequency"} | of_wing
-    )
+    of_loop = {"control.loops[NAME].actuator_bandwidth"}  # tests/deck/test_control_deck.py
+    modes = {"rotor.flap_frequency", "rotor.lag_frequency", "support.modes[NAME].frequency"}
+    assert fields == modes | of_wing | of_loop
 
 
 def test_a_frequency_is_per_revolution_of_its_file(deck):

@@ -186,7 +186,9 @@ def test_a_harmonic_shifts_the_frequency_of_a_blade(n_blades):
     """A flat blade at ν per rev is at |ν − n| and ν + n in the n-th harmonic, and at ν against its neighbours."""
     flap, lag, speed = 1.13, 2.4, 44.0
     pair = flown(n_blades).pair
-    flat = replace(pair.package, precone=0.0, flap_damping=0.0, lag_damping=0.0, **NO_LINKAGES)
+    flat = replace(
+        pair.package, precone=0.0, flap_damping=0.0, lag_damping=0.0, offset_mass=None, **NO_LINKAGES
+    )
     operation = pp.Operation(rotor_speed=speed, density=0.0, speed_of_sound=340.0, trim={"collective": 0.3})
     given = {
         "structure": "tabulated",

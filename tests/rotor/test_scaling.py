@@ -64,6 +64,19 @@ OF_ONE_BLADE += ("flap_damping", "lag_damping", "pitch_damping")
 # Models -------------------------------------------------------------------------------------------
 
 
+def beside_axis(rotor, mass, length):
+    """Integrals of masses that are times as heavy, at places that are times as far from the pitch axis."""
+    if rotor.offset_mass is None:
+        return {}
+    powers = {name: 1 if name.endswith("moment") else 2 for name in vars(rotor.offset_mass)}
+    numbers = {name: mass * length ** powers[name] * value for name, value in vars(rotor.offset_mass).items()}
+    given = rotor.propeller_inertia
+    return {
+        "offset_mass": pp.OffsetMass(**numbers),
+        "propeller_inertia": None if given is None else mass * length**2 * given,
+    }
+
+
 def times(value, factor):
     """A number times a factor; None, for a stiffness that is none of its own, stays."""
     return None if value is None else value * factor
@@ -87,8 +100,10 @@ class Model:
             **dict.fromkeys(DAMPERS, self.moment * self.time),
         }
         scaled = {name: times(getattr(rotor, name), factor) for name, factor in factors.items()}
-        chord, twist = self._along(rotor.chord, self.length), self._along(rotor.twist, 1.0)
-        return replace(rotor, **scaled, chord=chord, twist=twist)
+        scaled |= beside_axis(rotor, self.mass, self.length)
+        units = {"chord": self.length, "twist": 1.0, "aerodynamic_center": self.length}
+        along = {name: self._along(getattr(rotor, name), unit) for name, unit in units.items()}
+        return replace(rotor, **scaled, **along)
 
     def _along(self, distribution, factor):
         if isinstance(distribution, tuple):
@@ -227,6 +242,7 @@ def test_more_blades_that_are_lighter_and_narrower_are_the_same_rotor(flight, se
     chord = flight.rotor.chord
     chord = (chord[0], chord[1] * share) if isinstance(chord, tuple) else chord * share
     fields = {name: times(getattr(flight.rotor, name), share) for name in OF_ONE_BLADE}
+    fields |= beside_axis(flight.rotor, share, 1.0)
     airfoil = replace(flight.rotor.airfoil, moment=flight.rotor.airfoil.moment / share)
     other = flight.with_rotor(n_blades=n_blades, chord=chord, airfoil=airfoil, **fields)
     options = {"airloads": airloads, "section_damping": False}

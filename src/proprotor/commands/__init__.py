@@ -12,7 +12,9 @@ and show its result; they compute nothing themselves.
 
     cases new describe                              decks
     blade                                           a blade of a deck from a table of stations
-    sweep flutter stability_map sensitivity attribution study    analyses of a case
+    sweep flutter boundary envelope stability_map margins sensitivity attribution study    analyses of a case
+    gust                                            what turbulence and single gusts do to a case
+    identify calibrate mac                          records, test points and measured modes beside a case
     report explore                                  a page on a case, as a file and with sliders
     export                                          the equations of a case for another program
 
@@ -25,12 +27,18 @@ __all__ = [
     "attribution",
     "blade",
     "boundary",
+    "calibrate",
     "cases",
     "describe",
+    "envelope",
     "explore",
     "export",
     "flutter",
+    "gust",
+    "identify",
+    "mac",
     "main",
+    "margins",
     "new",
     "report",
     "sensitivity",

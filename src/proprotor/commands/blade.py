@@ -69,8 +69,9 @@ def blade(
     """Make a hinged blade of a table of stations, and show how near it is to the elastic blade.
 
     STATIONS is a CSV file whose first line names the columns with units: r, mass, EI_flat, EI_edge, GJ, twist, and
-    perhaps chord and pitch_inertia, such as "r [in], mass [lb/ft], EI_flat [lbf*in**2]". The blade is held at its first
-    station. Where the hinged blade differs by more than 5 % from the elastic one, the command says so.
+    perhaps chord, pitch_inertia, x_cg and x_ac aft of the pitch axis, such as "r [in], mass [lb/ft], EI_flat
+    [lbf*in**2]". The blade is held at its first station. Where the hinged blade differs by more than 5 % from the
+    elastic one, the command says so.
 
     \b
     Examples:
@@ -95,7 +96,7 @@ def blade(
         found = hinged_blade(table, speed, pitch)
         compared = compare_blades(table, found)
     if deck:
-        output.write("--deck", deck, deck_lines(found, stations).encode())
+        output.write("--deck", deck, deck_lines(found, table, stations).encode())
 
     def draw() -> Any:
         from proprotor.plots import plot_blade_frequencies

@@ -174,16 +174,23 @@ def doubts_as_data(doubts: Iterable[Doubt]) -> list[dict[str, Any]]:
     return [{"doubt": doubt.text, "from (m/s)": doubt.low, "to (m/s)": doubt.high} for doubt in doubts]
 
 
-def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, text: Sequence[str] = ()) -> None:
+def print_table(
+    columns: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    *,
+    text: Sequence[str] = (),
+    narrowest: int = _NARROWEST,
+) -> None:
     """Print a table: numbers are set to the right, the columns named in `text` to the left.
 
-    No cell is cut off. The last column, if it is text, is wrapped to the width of the terminal.
+    No cell is cut off. The last column, if it is text, is wrapped to the width of the terminal, but never to less than
+    `narrowest` characters.
     """
     table = [columns, *rows]
     widths = [max(map(len, cells)) for cells in zip(*table, strict=True)]
     out = console()
     indent = sum(widths[:-1]) + 2 * (len(widths) - 1)
-    room = max(_NARROWEST, out.width - indent) if columns[-1] in text else 10_000
+    room = max(narrowest, out.width - indent) if columns[-1] in text else 10_000
     for number, row in enumerate(table):
         *cells, last = (
             cell.ljust(width) if name in text else cell.rjust(width)

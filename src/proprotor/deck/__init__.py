@@ -15,6 +15,8 @@ asked for, with the source of every number, or the text of a deck and the descri
     fields              types of fields: form, unit, bound
     sections            the sections of a deck, their fields and the meaning of each
     support_sections    the section [support], one set of fields for each kind
+    envelope_sections   the sections [envelope] and [variants.NAME]
+    control_sections    the section [control]: control loops
     tables              walk nested tables
     text                printable text, prose on one line
     validation          check tables against the sections, a line for each problem
@@ -24,9 +26,11 @@ asked for, with the source of every number, or the text of a deck and the descri
     build_support       the support from numbers and files
     build_airfoil       the airfoil, or the airfoils by region of the span
     build_aircraft      the airframe of a whole aircraft from numbers
+    build_control       control loops from a deck, and their numbers by path
     each_design         each different design of a batch, built once
     left                what differs on the left side of an aircraft
     vary                other designs: other values for numbers of the deck
+    conditions          the conditions of an envelope: the deck and its variants, each as a case
     describe            every field in words
     fields_page         docs/decks.md
     schema              the JSON schema, for editors
@@ -40,15 +44,17 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 from proprotor.deck.build import load
 from proprotor.deck.file import list_cases, read_tables
 from proprotor.deck.per_revolution import as_one_file
-from proprotor.deck.vary import check_input, design_inputs, vary
+from proprotor.deck.vary import added_loops, check_input, design_inputs, varied_numbers, vary, with_control
 from proprotor.deck.written import FilePath, PerRevolution
 
 __all__ = [
     "FilePath",
     "PerRevolution",
+    "added_loops",
     "as_one_file",
     "blade_file",
     "check_input",
+    "conditions",
     "describe",
     "design_inputs",
     "fields_page",
@@ -59,5 +65,7 @@ __all__ = [
     "settings",
     "template",
     "validation",
+    "varied_numbers",
     "vary",
+    "with_control",
 ]

@@ -55,7 +55,8 @@ def altered(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
         superseded.append(("support",))
     rotor: Any = changes.get("rotor")
     if is_section(rotor) and not rotor.keys().isdisjoint(MASS_INTEGRALS):
-        superseded.append(("rotor", "hub_mass"))  # belongs to a distribution; the integrals contain the hub
+        # Both belong to a distribution; the integrals contain the hub.
+        superseded += [("rotor", "hub_mass"), ("rotor", "mass_offset")]
     for place in superseded:
         base = without(base, place)
     return _merged(base, changes)

@@ -32,9 +32,20 @@ _COLUMNS = {
     "torsion_stiffness": ("N*m**2", "above zero", ("GJ", "torsion_stiffness")),
     "twist": ("rad", "", ("twist", "structural_twist", "theta")),
     "chord": ("m", "above zero", ("chord", "c")),
+    "mass_offset": ("m", "", ("mass_offset", "x_cg", "cg", "center_of_gravity", "centre_of_gravity")),
+    "aerodynamic_center": (
+        "m",
+        "",
+        ("aerodynamic_center", "aerodynamic_centre", "x_ac", "ac", "quarter_chord"),
+    ),
+    "elastic_axis": ("m", "", ("elastic_axis", "x_ea", "ea", "pitch_axis", "shear_center")),
     "pitch_inertia_per_length": ("kg*m", "not negative", ("pitch_inertia", "I_theta", "inertia")),
 }
-_OPTIONAL = ("chord", "pitch_inertia_per_length")
+_PLACES = (
+    "mass_offset",
+    "aerodynamic_center",
+)  # aft of the pitch axis, or of the line that elastic_axis is told from
+_OPTIONAL = ("chord", "pitch_inertia_per_length", "elastic_axis", *_PLACES)
 _PER_RADIUS = ("r_over_R", "x/R", "r/R")
 
 
@@ -42,7 +53,9 @@ def read_blade(path: str | os.PathLike[str], *, radius: float | None = None, **h
     """Return the stations of a blade from a CSV file.
 
     The first line names the columns with their units, in brackets or parentheses: ``r [in], mass [lb/ft], EI_flat
-    [lbf*in**2], EI_edge [lbf*in**2], GJ [lbf*in**2], twist [deg]``, and perhaps ``chord`` and ``pitch_inertia``. Other
+    [lbf*in**2], EI_edge [lbf*in**2], GJ [lbf*in**2], twist [deg]``, and perhaps ``chord`` and ``pitch_inertia``. The
+    columns ``mass_offset`` (or ``x_cg``) and ``aerodynamic_center`` (``x_ac``) are aft of the pitch axis; with a column
+    ``elastic_axis`` (``x_ea``) all three are aft of one line, and the elastic axis stands for the pitch axis. Other
     columns are left aside. Between semicolons or tabs a number may have a decimal comma.
 
     Parameters
@@ -66,7 +79,7 @@ def read_blade(path: str | os.PathLike[str], *, radius: float | None = None, **h
     try:
         heads, rows = table_of(read_text(Path(path), "file", name, _LARGEST))
         own = _own_columns(heads)
-        columns: dict[str, Any] = _columns(own, rows, _scales(own, radius))
+        columns: dict[str, Any] = _from_pitch_axis(_columns(own, rows, _scales(own, radius)))
     except Fault as fault:
         raise InputError("file", name, str(fault)) from None
     return BladeStations(**columns, **held)
@@ -112,6 +125,18 @@ def _columns(own: dict[str, Head], rows: Iterator[Line], scales: dict[str, float
         if len(found["radius"]) > _MOST_STATIONS:
             raise Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
     return {field: np.array(values) for field, values in found.items()}
+
+
+def _from_pitch_axis(columns: dict[str, Array]) -> dict[str, Array]:
+    """Return the columns with places on the chord aft of the elastic axis, for which the pitch axis stands."""
+    axis = columns.pop("elastic_axis", None)
+    if axis is None:
+        return columns
+    if not any(name in columns for name in _PLACES):
+        raise Fault(
+            "has a column for elastic_axis, and none for mass_offset or aerodynamic_center to count from it"
+        )
+    return columns | {name: columns[name] - axis for name in _PLACES if name in columns}
 
 
 def _check(number: int, head: Head, sign: str, value: float) -> None:

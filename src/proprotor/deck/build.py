@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from proprotor.control.control_loop import ControlLoop
 from proprotor.datum import Datum
 from proprotor.deck.alternatives import fields_instead_of
 from proprotor.deck.build_aircraft import fuselage_of
 from proprotor.deck.build_airfoil import airfoil_of
+from proprotor.deck.build_control import law_warnings, loops_of, with_numbers
 from proprotor.deck.build_support import build_support, fitted_stiffness_factors
 from proprotor.deck.file import read_tables
 from proprotor.deck.numbers import LEFT, left_numbers, numbers_of, own_numbers
@@ -55,7 +57,14 @@ def load(
     return assemble(deck, numbers_of(deck), kind=kind)
 
 
-def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = (), *, kind: type[C]) -> C:
+def assemble(
+    deck: Deck,
+    numbers: Mapping[str, Datum],
+    names: tuple[str, ...] = (),
+    loops: Sequence[ControlLoop] | None = None,
+    *,
+    kind: type[C],
+) -> C:
     """Build the configuration of a deck with given numbers.
 
     Parameters
@@ -65,6 +74,8 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         By path. Values may be arrays of many designs, or complex for derivatives by a complex step.
     names : tuple of str
         Names of the support's coordinates, in the order in which designs of a beam wing have these coordinates.
+    loops : sequence of ControlLoop, optional
+        Control loops in place of the deck's own.
     kind : type
         Class to build: `Configuration`, or a class that adds methods to `Configuration`.
 
@@ -87,12 +98,13 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
             doubts += unit_warnings(support, at_rest)
         if deck.support.kind == "aircraft":
             derived |= fuselage_of(deck.support, numbers)
+    closed = [with_numbers(loop, numbers) for loop in (loops_of(deck) if loops is None else loops)]
     return kind(
         name=deck.case.name,
         title=deck.case.title,
         description=deck.case.description,
         calibration=deck.case.calibration,
-        warnings=(*deck.case.warnings, *doubts),
+        warnings=(*deck.case.warnings, *doubts, *law_warnings(closed)),
         rotor=rotor,
         operation=operation,
         support=support,
@@ -102,6 +114,7 @@ def assemble(deck: Deck, numbers: Mapping[str, Datum], names: tuple[str, ...] = 
         left=_left(deck, numbers),
         deck=deck,
         given=numbers,
+        loops=tuple(closed),
     )
 
 
@@ -216,8 +229,8 @@ def _rotor(given: dict[str, Any], density: float) -> tuple[Rotor, dict[str, Datu
     lock_number = given.pop("lock_number", None)
     build: Callable[..., Rotor] = Rotor
     if "mass_distribution" in given:
-        distribution, hub_mass = given.pop("mass_distribution"), given.pop("hub_mass", None)
-        build = partial(Rotor.from_mass_distribution, *distribution, hub_mass=hub_mass)
+        beside = {name: given.pop(name, None) for name in ("hub_mass", "mass_offset")}
+        build = partial(Rotor.from_mass_distribution, *given.pop("mass_distribution"), **beside)
     # Springs and chord may follow from inertias that only a rotor has, so this rotor has placeholders.
     bare = build(**{"flap_stiffness": 0.0, "lag_stiffness": 0.0, "chord": 1.0} | given)
     derived = {f"{name}_stiffness": _spring(bare, name, frequency) for name, frequency in omega.items()}

@@ -194,6 +194,9 @@ def _loaded(
     values = partial(si_values, numbers)
     wing = None
     if section.wing_aerodynamics is not None:
+        if (flap := section.wing_aerodynamics.flap_chord) is not None:
+            rule = "goes with a wing that carries one rotor: an aircraft has no flaperon"
+            raise InputError("wing_aerodynamics.flap_chord", flap.written, rule)
         wing = WingAerodynamics(**values("support.wing_aerodynamics"), sweep=given.get("sweep", 0.0))
     tails = {
         name: Tail(**values(f"support.{name}"))

@@ -65,7 +65,8 @@ def _stated(
     """Return the tables at a place of a deck with the provenance of every number, the sections inside included."""
     result = {}
     for name, entry in tables.items():
-        inner = (*place, name) if place or name != "left" else ()
+        is_deck = (not place and name == "left") or place == ("variants",)  # tables of a whole deck
+        inner = () if is_deck else (*place, name)
         if _is_number(place, name, kind, entry):
             result[name] = _with_status(entry, provenance)
         elif isinstance(entry, dict):

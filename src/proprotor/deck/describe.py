@@ -14,10 +14,11 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+from proprotor.control.control_loop import ControlLoop
+from proprotor.deck import control_sections, support_sections
 from proprotor.deck import sections as deck
-from proprotor.deck import support_sections
 from proprotor.deck.fields import AfterChoice, Reading, Section
-from proprotor.deck.sections import section_places, sections_at, sections_of
+from proprotor.deck.sections import LISTS, section_places, sections_at, sections_of
 from proprotor.errors import InputError, list_choices
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
@@ -41,6 +42,10 @@ _FORMS = {
     "files": "the name of a file, or a list of names",
     "rising list": "{ value = [...], unit = ... }",
 }
+_NAMED = {
+    **{place: f"{place}[NAME]" for place in LISTS},
+    "variants": "variants.NAME",
+}  # sections of which there are several
 _PLAIN = {bool: "true or false", str: "text"}
 # Forms of fields that are no numbers, by their possible values.
 _PLAIN_FORMS = {
@@ -131,8 +136,10 @@ def _hint(wanted: str) -> str:
 
 
 def plain_path(path: str) -> str:
-    """Return a path without the names of entries of lists."""
-    return "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
+    """Return a path without the names of entries of lists and of variants."""
+    plain = "".join(part.partition("]")[2] if "]" in part else part for part in path.split("["))
+    first, _, rest = plain.partition(".")
+    return f"variants.{rest.partition('.')[2]}" if first == "variants" and "." in rest else plain
 
 
 def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckField]:
@@ -145,7 +152,7 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
         reading = number or Reading(_PLAIN_FORMS.get(takes, ""))
         is_one_side = any(name in side for choice in section.alternatives for side in choice)
         yield DeckField(
-            path=f"{place}.{name}".replace("support.modes.", "support.modes[NAME]."),
+            path=f"{_NAMED.get(place, place)}.{name}",
             kind=kind,
             meaning=field.description or "",
             takes=takes,
@@ -218,6 +225,7 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
         deck.RotorSection: (Rotor,),
         deck.AirfoilSection: (Airfoil, AirfoilRegions),
         deck.DriveTrainSection: (DriveTrain,),
+        control_sections.ControlLoopSection: (ControlLoop,),
         support_sections.BeamWingSection: (Wing, Pylon),
         support_sections.AircraftSection: (Wing, Pylon),
         support_sections.FuselageSection: (Fuselage,),

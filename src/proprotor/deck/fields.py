@@ -154,7 +154,12 @@ Damping = Annotated[Datum | None, Reading("number", "N*m*s/rad", NOT_NEGATIVE)]
 Slope = Annotated[Datum | None, Reading("number", "1/rad", POSITIVE)]
 RotorSpeed = Annotated[Datum, Reading("number", "rad/s", POSITIVE)]
 Density = Annotated[Datum | None, Reading("number", "kg/m**3", NOT_NEGATIVE)]
+Time = Annotated[Datum | None, Reading("number", "s", POSITIVE)]
 Speed = Annotated[Datum | None, Reading("number", "m/s", POSITIVE)]
+EquivalentSpeed = Annotated[Datum | None, Reading("number", "keas", POSITIVE)]
+Altitudes = Annotated[Datum | None, Reading("rising list", "m")]
+RotorSpeeds = Annotated[Datum | None, Reading("rising list", "rad/s", POSITIVE)]
+Powers = Annotated[Datum | None, Reading("rising list", "W")]
 DampingRatio = Annotated[Datum | None, Reading("number", "", BELOW_CRITICAL)]
 DampingRatios = Annotated[Datum | None, Reading("curve", "", BELOW_CRITICAL)]
 Positives = Annotated[Datum | None, Reading("curve", "", POSITIVE)]
@@ -164,6 +169,7 @@ Count = Annotated[Datum | None, Reading("count", least=3)]
 Size = Annotated[Datum | None, Reading("count", least=1)]
 Chord = Annotated[Datum | None, _AlongTheBlade("along the blade", "m", POSITIVE, beyond=HELD)]
 Twist = Annotated[Datum | None, _AlongTheBlade("along the blade", "rad", beyond=HELD)]
+PlaceOnChord = Annotated[Datum | None, _AlongTheBlade("along the blade", "m", beyond=HELD)]
 MassDistribution = Annotated[
     Datum | None, _AlongTheBlade("distribution", "kg/m", NOT_NEGATIVE, beyond=NOTHING)
 ]
@@ -173,6 +179,7 @@ Abscissa = Annotated[
     Datum | None,
     AfterChoice("rising list", "rad", choice="against", usual="collective", other_unit="m/s"),
 ]
+Airspeeds = Annotated[Datum | None, Reading("rising list", "m/s")]
 File = Annotated[Datum | None, Reading("file")]
 Slopes = Annotated[Datum | None, Reading("curve", "1/rad", POSITIVE)]
 Angles = Annotated[Datum | None, Reading("curve", "rad")]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from proprotor.deck.describe import DeckField, deck_fields, plain_path
-from proprotor.deck.sections import section_places, sections_at
+from proprotor.deck.sections import LISTS, section_places, sections_at
 
 _HEAD = """# Fields of a deck
 
-Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py` and
-`support_sections.py`.
+Written by `proprotor describe --markdown` from the definitions in `src/proprotor/deck/sections.py`,
+`support_sections.py` and `control_sections.py`.
 
 A deck is a TOML file. A number with a dimension is text with its unit, US or SI, `radius = "12.5 ft"`; a number without
 a dimension is plain. Either may be a table that names its source:
@@ -36,6 +36,9 @@ An editor that knows JSON schemas for TOML (Even Better TOML, taplo) completes a
 """
 
 
+_BRACKETS = {place: f"[[{place}]]" for place in LISTS} | {"variants": "[variants.NAME]"}
+
+
 def markdown() -> str:
     """Return the text of docs/decks.md."""
     return "\n".join([_HEAD, *_sections()]) + "\n"
@@ -45,7 +48,7 @@ def _sections() -> Iterator[str]:
     for place in section_places():
         for kind, section in sections_at(place).items():
             name = ".".join(place)
-            brackets = f"[[{name}]]" if name == "support.modes" else f"[{name}]"
+            brackets = _BRACKETS.get(name, f"[{name}]")
             yield f"## {brackets}{f' of kind {kind}' if kind else ''}\n"
             yield f"{' '.join((section.__doc__ or '').split())}\n"
             yield "| field | meaning | takes | range | default | instead of |"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +24,13 @@ _FILES = (
     ("rotor", "airfoil", "table", "value"),
     *(("support", name, "value") for name in ("file", "mass", "stiffness", "damping", "dofs", "hub_motion")),
 )
-_MAY_BE_COLUMNS = ("chord", "twist", "mass_distribution")  # in [rotor]: { file = ..., column = ... }
+_MAY_BE_COLUMNS = (
+    "chord",
+    "twist",
+    "mass_distribution",
+    "mass_offset",
+    "aerodynamic_center",
+)  # in [rotor]: { file = ..., column = ... }
 
 _LARGEST = 1_000_000  # bytes
 
@@ -57,14 +64,13 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     """Return the tables of a deck that is named from a folder; `altered_by` are the files that lead to it as a base."""
     file = _find(name, folder)
     tables = _parse(file, name)
-    if "left" in tables:
-        tables["left"] = nested(tables["left"])
+    for part in _with_variants(tables):
+        if "left" in part:
+            part["left"] = nested(part["left"])
     tables = with_default_provenance(tables)
     folder = file.parent if isinstance(file, Path) else folder
-    for place in _FILES:
-        _locate_file(tables, folder, place)
-    for name in _MAY_BE_COLUMNS if isinstance(tables.get("rotor"), dict) else ():
-        _locate_file(tables["rotor"].get(name), folder, ("file",))
+    for part in _with_variants(tables):
+        _locate_files(part, folder)
     if "base" not in tables:
         return per_revolution_of(tables, tables)
     base = tables.pop("base")
@@ -76,6 +82,22 @@ def _tables(name: str, folder: Path, altered_by: tuple[str, ...]) -> dict[str, A
     inherited = without(_tables(base, folder, (*altered_by, str(file))), ("case", "name"))
     whole = altered(inherited, tables)
     return per_revolution_of(whole, whole)
+
+
+def _with_variants(tables: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield the tables of a deck, then those of each variant that is a table."""
+    yield tables
+    variants = tables.get("variants")
+    if isinstance(variants, dict):
+        yield from (variant for variant in variants.values() if isinstance(variant, dict))
+
+
+def _locate_files(tables: dict[str, Any], folder: Path) -> None:
+    """Make all names of files in the tables of a deck or of a variant start from a folder."""
+    for place in _FILES:
+        _locate_file(tables, folder, place)
+    for name in _MAY_BE_COLUMNS if isinstance(tables.get("rotor"), dict) else ():
+        _locate_file(tables["rotor"].get(name), folder, ("file",))
 
 
 def _bundled() -> dict[str, Traversable]:

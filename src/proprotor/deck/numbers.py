@@ -50,9 +50,10 @@ def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
         entry, here = getattr(section, name), f"{path}.{name}" if path else name
         if isinstance(entry, Datum):
             yield here, entry
-        elif name == "modes" and entry is not None:
-            for mode in entry:
-                yield from _numbers(mode, f"{here}[{mode.name}]")
+        elif isinstance(entry, list | tuple):
+            for one in entry:
+                if hasattr(type(one), "model_fields"):
+                    yield from _numbers(one, f"{here}[{one.name}]")
         elif hasattr(type(entry), "model_fields"):
             yield from _numbers(entry, here)
 

@@ -90,6 +90,7 @@ _TABLES = {
     "RotorSection": "rotor",
     "OperationSection": "operation",
     "AirfoilSection": "",
+    "EnvelopeSection": "envelope",
 }
 
 

@@ -10,12 +10,12 @@ without a dimension is plain. Either may be a table that names its source::
 with a status of published, measured, derived, recalled, calibrated or assumed, see `default_status` of [case] for a
 status of all numbers of a file. Chord and twist take one value (twist:
 the linear change from centre to tip) or a distribution ``{ r_over_R = [...], value = [...], unit = "deg" }``,
-linear between its stations; chord, twist and mass_distribution may also be a column of a CSV file,
-``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
+linear between its stations, as mass_offset and aerodynamic_center do; all of these and mass_distribution may also be a
+column of a CSV file, ``{ file = "stations.csv", column = "twist" }`` (`proprotor.deck.stations`).
 
-Stations of chord and twist reach from the root cutout to the tip, or their table says ``beyond = "held"``: the end
-values hold there. Stations of mass_distribution reach from the centre of rotation, or with hub_mass from anywhere, to
-the tip, or their table says ``beyond = "nothing"``: no mass there.
+Stations of chord, twist and aerodynamic_center reach from the root cutout to the tip, or their table says
+``beyond = "held"``: the end values hold there. Stations of mass_distribution reach from the centre of rotation, or with
+hub_mass from anywhere, to the tip, or their table says ``beyond = "nothing"``: no mass there.
 
 ``base``
     Above all sections: the deck that this deck alters, a bundled name or a file in the same folder. A field of this
@@ -46,6 +46,9 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
 ``[drive_train]``
     Optional; the arguments of `proprotor.DriveTrain`: drive_inertia, drive_damping, shaft_stiffness, mast_stiffness,
     engine_inertia, engine_damping and, of an aircraft, interconnect_stiffness.
+``[control]``
+    Optional; control loops that every result has closed, a table ``[[control.loops]]`` each:
+    `proprotor.deck.control_sections` lists the fields.
 ``[support]``
     kind and the fields of that kind: `proprotor.deck.support_sections` lists them.
 
@@ -54,6 +57,13 @@ the tip, or their table says ``beyond = "nothing"``: no mass there.
     ``rotor.control_stiffness = "8000 ft*lbf/rad"``; of [rotor] all but the number of blades and the radius, of
     [operation] the trim, of [drive_train] all but the interconnect shaft, and of [support] the wing, the
     carry-through box, the pylon and its springs. The whole unsymmetric aircraft is then one problem.
+
+``[envelope]``
+    Optional; what `proprotor envelope` needs: dive_speed, altitudes and perhaps dive_mach, speed_factor,
+    failure_speed_factor, damping_ratio, temperature_offset, rotor_speeds and powers.
+``[variants.NAME]``
+    Optional, a table for each condition of the deck: condition, "normal" or "failure", and the fields that differ,
+    ``support.downstop = false``.
 
 A frequency is in rad/s, in Hz (cycles per second) or, ``"0.42/rev"``, per revolution of the rotor speed that is
 written in the same file, or in the base if the file gives none. The frequency is then fixed in hertz: a deck that
@@ -76,7 +86,9 @@ from proprotor.deck.alternatives import (
     ALTERNATIVES,
     TRIM_ALTERNATIVES,
 )
+from proprotor.deck.control_sections import ControlSection
 from proprotor.deck.default_provenance import DEFAULT_SOURCE, DEFAULT_STATUS
+from proprotor.deck.envelope_sections import EnvelopeSection, VariantSection
 from proprotor.deck.fields import Section, Sides, needed, optional
 from proprotor.deck.reading import read_quantity
 from proprotor.deck.support_sections import SupportSection
@@ -292,6 +304,10 @@ class RotorSection(Section):
     pitch_damping: fields.Damping = optional("Viscous damping of the blade's pitch.")
     gimbal_damping: fields.Damping = optional("Viscous damping of the gimbal, in non-rotating axes.")
     propeller_moment: bool = optional("Whether the propeller moment acts on the blade's pitch.", True)
+    propeller_inertia: fields.InertiaOrNone = optional(
+        "I_xx - I_yy of one blade, chordwise less through the thickness, which makes the propeller moment; that of "
+        "pitch_inertia, a thin blade, if left out."
+    )
     chord: fields.Chord = optional(
         "Chord of the blade, one value or along r from root cutout to tip; "
         'beyond = "held" if the end values hold beyond the stations.'
@@ -300,6 +316,13 @@ class RotorSection(Section):
     twist: fields.Twist = needed(
         "Twist, one value for a linear change from centre to tip, or along r from root cutout to tip; "
         'beyond = "held" if the end values hold beyond the stations. Pitch is zero at 0.75 R.'
+    )
+    mass_offset: fields.PlaceOnChord = optional(
+        "Centre of the mass aft of the pitch axis, one value or along r from lag hinge to tip, with mass_distribution; "
+        "it counts outboard of the lag hinge."
+    )
+    aerodynamic_center: fields.PlaceOnChord = optional(
+        "Aerodynamic centre (quarter chord) aft of the pitch axis, one value or along r from root cutout to tip."
     )
     airfoil: AirfoilSection = needed("Sections of the blade.")
     frequencies: FrequenciesSection | None = optional("Blade frequencies; from the springs if left out.")
@@ -311,6 +334,9 @@ class RotorSection(Section):
         if self.hub_mass is not None and self.mass_distribution is None:
             rule = "must be given with mass_distribution; blade_mass holds the hub's mass"
             raise InputError("hub_mass", self.hub_mass.written, rule)
+        if self.mass_offset is not None and self.mass_distribution is None:
+            rule = "must be given with mass_distribution: the seven integrals do not tell where the mass is"
+            raise InputError("mass_offset", self.mass_offset.written, rule)
         return self
 
 
@@ -410,9 +436,15 @@ class Deck(Section):
     operation: OperationSection = needed("The operation of the rotor, and the air.")
     drive_train: DriveTrainSection | None = optional("Engine and shaft; none if left out.")
     support: SupportSection = needed("The support of the rotor.")
+    control: ControlSection | None = optional("Control loops; none if left out.")
     left: LeftSection | None = optional("What differs on the left side of an aircraft; nothing if left out.")
+    envelope: EnvelopeSection | None = optional("Speeds and altitudes to be free of flutter.")
+    variants: dict[fields.Name, VariantSection] = Field(
+        default_factory=dict, description="Conditions of the deck by name: other loads, and failures."
+    )
 
     _left_side: Deck | None = PrivateAttr(default=None)
+    _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _origin: tuple[str, dict[str, str]] = PrivateAttr(default=("", {}))
 
     @property
@@ -430,6 +462,17 @@ class Deck(Section):
     def left_side(self) -> Deck | None:
         """The whole deck of the left side, if the left side differs."""
         return self._left_side
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """The tables that the deck was made from, without those of its envelope and its variants."""
+        return self._tables
+
+    def with_tables(self, tables: Mapping[str, Any]) -> Deck:
+        """Return the deck with the tables that it was made from."""
+        whole = self.model_copy()
+        whole._tables = dict(tables)
+        return whole
 
     def with_left_side(self, other: Deck) -> Deck:
         """Return the deck with the whole deck of the left side."""
@@ -457,6 +500,7 @@ def _places(
 
 
 SECTIONS = dict(_places(Deck))
+LISTS = ("support.modes", "control.loops")  # places of lists of sections, whose entries have names
 SUPPORT_KINDS = tuple(place[1] for place in SECTIONS if place[:1] == ("support",) and len(place) == 2)
 
 

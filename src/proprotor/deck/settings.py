@@ -105,6 +105,7 @@ def _value(text: str, place: _Place) -> Any:
 
 def _field(names: list[str]) -> Any:
     """Return the definition of a field, for [support] of the first kind that has it; None for an unknown field."""
+    names = names[2:] if names[0] == "variants" and len(names) > 2 else names
     *outer, last = names[1:] if names[0] == "left" and len(names) > 1 else names
     sections = sections_at(tuple(outer)).values()
     return next((section.model_fields[last] for section in sections if last in section.model_fields), None)

@@ -78,6 +78,11 @@ class WingAerodynamicsSection(Section):
     elastic_axis: fields.Number = needed("Elastic axis, in chords behind the leading edge.")
     aerodynamic_centre: fields.Number = optional("Aerodynamic centre, in chords behind the leading edge.")
     downwash_point: fields.Number = optional("Point of the downwash, in chords behind the leading edge.")
+    flap_chord: fields.Fraction = optional(
+        "Chord of a flaperon over that of the wing, an input of control loops; not of an aircraft. None if left out."
+    )
+    flap_inboard: fields.Fraction = optional("Inboard end of the flaperon, in parts of the span.")
+    flap_outboard: fields.Fraction = optional("Outboard end of the flaperon, in parts of the span.")
 
 
 class AssumedShapeSection(WingAerodynamicsSection):

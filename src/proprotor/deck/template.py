@@ -11,7 +11,7 @@ from typing import Any
 
 from proprotor.deck.describe import DeckField, deck_fields
 from proprotor.deck.per_revolution import as_one_file
-from proprotor.deck.sections import section_places
+from proprotor.deck.sections import LISTS, section_places
 from proprotor.deck.written import FileName
 from proprotor.units import meaning
 
@@ -46,6 +46,18 @@ _EXAMPLES_OF_FIELDS = {
     "left.operation": '{ trim = { collective = "30 deg" } }',
     "left.drive_train": '{ drive_damping = "100 N*m*s/rad" }',
     "left.support": "{ downstop = false }",
+    "envelope.dive_mach": "0.6",
+    "envelope.altitudes": '{ value = [0, 10000, 20000], unit = "ft" }',
+    "envelope.speed_factor": "1.2",
+    "envelope.failure_speed_factor": "1.0",
+    "envelope.damping_ratio": "0.015",
+    "envelope.rotor_speeds": '{ value = [458, 500], unit = "rpm" }',
+    "envelope.powers": '{ value = [0, 900], unit = "hp" }',
+    "variants.NAME.rotor": '{ control_stiffness = "8000 ft*lbf/rad" }',
+    "variants.NAME.operation": '{ rotor_speed = "500 rpm" }',
+    "variants.NAME.drive_train": '{ drive_damping = "100 N*m*s/rad" }',
+    "variants.NAME.support": "{ downstop = false }",
+    "variants.NAME.left": '{ rotor = { control_stiffness = "8000 ft*lbf/rad" } }',
 }
 _COLUMNS = 13  # numbers of a list in one line
 
@@ -72,11 +84,15 @@ def deck_text(
     if variant:
         parts.append(f"# A variant: each field replaces the same field of the base.\nbase = {toml(base)}\n")
     for section in map(".".join, section_places()):
-        if section not in ("operation.trim", "support.modes"):  # the trim is a value, the modes follow
+        if section not in ("operation.trim", *LISTS, "variants"):  # the trim is a value, the others follow
             parts.append("\n".join(_section(section, tables, place, variant)))
-    modes = tables.get("support", {}).get("modes")
-    for mode in modes if isinstance(modes, list) else ():
-        parts.append("\n".join(_mode(mode, place, variant)))
+    for name, given in tables.get("variants", {}).items():
+        parts.append("\n".join(_variant(name, given, place, variant)))
+    for listed in LISTS:
+        outer, _, inner = listed.partition(".")
+        entries = tables.get(outer, {}).get(inner)
+        for entry in entries if isinstance(entries, list) else ():
+            parts.append("\n".join(_of_list(listed, entry, place, variant)))
     return "\n".join(f"{part.rstrip()}\n" for part in parts if part)
 
 
@@ -130,13 +146,22 @@ def _section(section: str, tables: Mapping[str, Any], place: Path, variant: bool
             yield from _entry(field, example(field), "# ")
 
 
-def _mode(mode: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
-    """Yield the lines of one normal mode of a support."""
+def _variant(name: str, given: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
+    """Yield the lines of one variant of the deck."""
     mark = "# " if variant else ""
-    yield f"{mark}[[support.modes]]"
+    yield f"{mark}[variants.{toml(name)}]"
     for field in deck_fields():
-        if field.path.startswith("support.modes[NAME].") and _name(field) in mode:
-            yield from _entry(field, toml(_from(mode[_name(field)], place)), mark)
+        if field.path.startswith("variants.NAME.") and _name(field) in given:
+            yield from _entry(field, toml(_from(given[_name(field)], place)), mark)
+
+
+def _of_list(listed: str, entry: Mapping[str, Any], place: Path, variant: bool) -> Iterator[str]:
+    """Yield the lines of one entry of a list: of a normal mode of a support, or of a control loop."""
+    mark = "# " if variant else ""
+    yield f"{mark}[[{listed}]]"
+    for field in deck_fields():
+        if field.path.startswith(f"{listed}[NAME].") and _name(field) in entry:
+            yield from _entry(field, toml(_from(entry[_name(field)], place)), mark)
 
 
 def _entry(field: DeckField, text: str, mark: str) -> Iterator[str]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
 
+from proprotor.deck.alternatives import altered
 from proprotor.deck.left import left_tables
 from proprotor.deck.sections import SECTIONS, SUPPORT_KINDS, Deck, in_the_deck
 from proprotor.deck.text import plain_text
@@ -32,13 +34,51 @@ def validate(tables: dict[str, Any]) -> Deck:
         With a line for every problem.
     """
     tables = plain_text(tables, _field_name)
+    deck = _whole(tables)
+    own = {name: table for name, table in tables.items() if name not in ("variants", "envelope")}
+    deck = deck.with_tables(own)
+    for name in deck.variants:
+        deck_of_condition(deck, (name,))
+    return deck
+
+
+def deck_of_condition(deck: Deck, variants: Sequence[str], changes: Mapping[str, Any] | None = None) -> Deck:
+    """Return the deck of a condition: with the fields of some of its variants, one after the other, and with changes.
+
+    Parameters
+    ----------
+    deck : Deck
+    variants : sequence of str
+    changes : mapping, optional
+        Tables with further fields.
+
+    Raises
+    ------
+    InputError
+        With a line for every problem.
+    """
+    tables = deck.tables
+    for name in variants:
+        given = deck.variants[name].model_dump(exclude_none=True, exclude={"condition"})
+        tables = altered(tables, given)
+    try:
+        whole = _whole(altered(tables, dict(changes or {})))
+    except InputError as error:
+        place = ".".join(("variants", *variants)) if variants else ""
+        first, *others = [one.within(place) for one in (error, *error.others)]
+        raise InputError(first.field, first.value, first.rule, others) from None
+    return whole.with_origin(*deck.origin)
+
+
+def _whole(tables: dict[str, Any]) -> Deck:
+    """Return the deck in tables, with the deck of the left side where it differs."""
     deck = _checked(tables)
     if deck.left is None:
         return deck
-    own = {name: table for name, table in tables.items() if name != "left"}
-    altered = left_tables(own, tables["left"])
+    own = {name: table for name, table in tables.items() if name not in ("left", "variants", "envelope")}
+    of_left = left_tables(own, tables["left"])
     try:
-        return deck.with_left_side(_checked(altered))
+        return deck.with_left_side(_checked(of_left))
     except InputError as error:
         first, *others = [one.within("left") for one in (error, *error.others)]
         raise InputError(first.field, first.value, first.rule, others) from None
@@ -61,7 +101,8 @@ def _input_error(problem: Any, tables: dict[str, Any]) -> InputError:
         error: InputError = problem["ctx"]["error"]
         return error.within(field)
     if kind == "extra_forbidden":
-        known = SECTIONS[tuple(part for part in place[:-1] if isinstance(part, str))].model_fields
+        names = tuple(part for part in place[:-1] if isinstance(part, str))
+        known = SECTIONS[names[:1] if names[:1] == ("variants",) else names].model_fields
         return InputError(field, problem["input"], unknown_name(str(place[-1]), known))
     if kind == "literal_error":
         return InputError(field, problem["input"], f"must be {problem['ctx']['expected']}")

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.control.control_loop import ControlLoop
 from proprotor.datum import Datum
 from proprotor.deck.build import C, assemble
+from proprotor.deck.build_control import IN_PYTHON, law_warnings, numbers_of_loops
 from proprotor.deck.numbers import numbers_of
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.configuration import Configuration
@@ -27,7 +29,7 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
     A path is the place in the deck: ``rotor.precone``, ``rotor.airfoil.lift_slope``, ``operation.rotor_speed``,
     ``drive_train.shaft_stiffness``, ``support.modes[beam].frequency``. A list with a number for each region of the
     span has the paths of its entries from the root outward, ``rotor.airfoil.lift_slope[1]``. Distributions along the
-    blade, blade frequencies, files and numbers that follow from other numbers are left out.
+    blade, blade frequencies, files, numbers that follow from other numbers, and the envelope's are left out.
 
     Parameters
     ----------
@@ -51,7 +53,7 @@ def design_inputs(case: Configuration) -> dict[str, Datum]:
         for path, number in _entries(whole, given)
         if number.r_over_R is None
         and not isinstance(number.si, _FIXED)
-        and not path.startswith("rotor.frequencies.")
+        and not path.startswith(("rotor.frequencies.", "envelope."))
     }
 
 
@@ -124,7 +126,7 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
             numbers[path] = varied
         else:
             numbers[entry[1]] = _with_entry(numbers[entry[1]], int(entry[2]), varied)
-    return assemble(case.deck, numbers, tuple(case.support.names), kind=type(case))
+    return assemble(case.deck, numbers, tuple(case.support.names), case.loops, kind=type(case))
 
 
 def _with_entry(whole: Datum, place: int, varied: Datum) -> Datum:
@@ -152,7 +154,7 @@ def varied_numbers(case: Configuration) -> dict[str, Any]:
         path: number.si
         for whole, given in case.given.items()
         for path, number in _entries(whole, given)
-        if not _same(number.si, own[path])
+        if path not in own or not _same(number.si, own[path])
     }
 
 
@@ -172,3 +174,47 @@ def _number(path: str, value: Any, unit: str) -> np.ndarray:
     if not np.isfinite(number).all():
         raise InputError(path, value, "must be finite")
     return number if number.dtype.kind == "c" else number.astype(float)
+
+
+def with_control(case: C, *loops: ControlLoop) -> C:
+    """Return the case with control loops closed, in place of those that it has; without loops, with none closed.
+
+    Parameters
+    ----------
+    case : Case
+    *loops : ControlLoop
+        Their numbers may vary like those of the deck: ``control.loops[damper].gain``.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    InputError
+        For something that is no control loop, and two loops of one name. Sensors and inputs are compared with those of
+        the model once it is made.
+    """
+    names: list[str] = []
+    for loop in loops:
+        if not isinstance(loop, ControlLoop):
+            raise InputError("loops", type(loop).__name__, "must be a ControlLoop")
+        if loop.name in names:
+            raise InputError("loops", loop.name, "must not be the name of two loops")
+        names.append(loop.name)
+    own, old = numbers_of_loops(loops), law_warnings(case.loops)
+    given, sources = (
+        {path: number for path, number in numbers.items() if not path.startswith("control.")} | own
+        for numbers in (case.given, case.sources)
+    )
+    warnings = (*(text for text in case.warnings if text not in old), *law_warnings(loops))
+    return replace(case, loops=loops, given=given, sources=sources, warnings=warnings)
+
+
+def added_loops(case: Configuration) -> bool:
+    """Return whether the control loops of a case are others than those of its deck, so that the deck does not tell."""
+    own = {} if case.deck.control is None else {one.name: one for one in case.deck.control.loops}
+    given = {loop.name for loop in case.loops}
+    return own.keys() != given or any(
+        number.source == IN_PYTHON for path, number in case.given.items() if path.startswith("control.")
+    )

@@ -64,12 +64,15 @@ def save_dmig(
     Raises
     ------
     InputError
-        When the model has more than one airspeed, failed or has no hub, a number is no point or unit, a component of
-        the hub is missing, or the path does not end in ``.bdf`` or cannot be written.
+        When the model has more than one airspeed, has control loops, failed or has no hub, a number is no point or
+        unit, a component of the hub is missing, or the path does not end in ``.bdf`` or cannot be written.
     OSError
         When the file cannot be written.
     """
     check_place(path, _ENDING)
+    if model.feedback is not None:
+        rule = "are not among the rotor's matrices: take the model without them, case.with_control()"
+        raise InputError("model", "its control loops", rule)
     rotor = model if model.rotor is None else model.rotor
     _check(rotor, grid, first_extra_point)
     check_finite("length_unit", length_unit, "above zero")

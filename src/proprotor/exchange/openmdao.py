@@ -1,4 +1,7 @@
-"""A component for OpenMDAO: flutter speed and damping of a case as functions of its inputs, with exact derivatives.
+"""Components for OpenMDAO: results on a case as functions of its inputs, with exact derivatives.
+
+`WhirlFlutter` has the flutter speed and the damping of modes; `GrowthConstraint` one number for an optimiser to keep at
+or below zero, which exists at stable designs as well.
 
 ::
 
@@ -41,6 +44,7 @@ from proprotor.model.stamp import one_density
 from proprotor.stability.boundary import Boundary
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.flutter import boundary_of, flutter_point
+from proprotor.stability.growth_constraint import SHARPNESS, growth_constraint
 from proprotor.stability.modes import decomposition
 from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
 from proprotor.typing import Dataset
@@ -63,7 +67,50 @@ def variable_name(path: str) -> str:
     return re.sub(r"[^A-Za-z0-9]+", "_", path).strip("_")
 
 
-class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
+class _OfCase(om.ExplicitComponent):  # type: ignore[misc]
+    """A component whose inputs are numbers of the deck of a case."""
+
+    def initialize(self) -> None:
+        """Declare the options."""
+        declare = self.options.declare
+        declare("case", recordable=False, desc="Case, or name or path of a deck")
+        declare("inputs", default=(), desc="paths of inputs, or a mapping of variable names to paths")
+        declare("model_options", default={}, recordable=False, desc="options of the model")
+
+    def _add_inputs(self) -> None:
+        """Add an input for each path, with the value of the case."""
+        case = self.options["case"]
+        self._case = case if isinstance(case, Case) else load_case(case)
+        self._paths = self._paths_by_name()
+        numbers = design_inputs(self._case)
+        for name, path in self._paths.items():
+            number = numbers[path]
+            self.add_input(name, float(number.si), units=_UNITS.get(number.unit, number.unit), desc=path)
+
+    @property
+    def _model_options(self) -> dict[str, Any]:
+        return dict(self.options["model_options"])
+
+    def _paths_by_name(self) -> dict[str, str]:
+        """Return the paths of the inputs by the names of their variables."""
+        given = self._listed("inputs", "paths")
+        paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
+        known = design_inputs(self._case)
+        for path in paths.values():
+            check_known("inputs", path, known, "input")
+        return paths
+
+    def _listed(self, option: str, names: str) -> Any:
+        """Return an option that lists names of a kind; refuse a text, which would be a list of its letters."""
+        if isinstance(given := self.options[option], str):
+            raise InputError(option, given, f"must be a list of {names}")
+        return given
+
+    def _varied(self, inputs: Mapping[str, NDArray[np.float64]]) -> Case:
+        return self._case.vary({path: inputs[name].item() for name, path in self._paths.items()})
+
+
+class WhirlFlutter(_OfCase):
     """Flutter speed, and damping of named modes, of a case as functions of numbers of its deck.
 
     Inputs are named by their paths (`variable_name`) and have SI units, which OpenMDAO converts: rotor_precone in rad.
@@ -103,16 +150,14 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
 
     def initialize(self) -> None:
         """Declare the options."""
+        super().initialize()
         declare = self.options.declare
-        declare("case", recordable=False, desc="Case, or name or path of a deck")
-        declare("inputs", default=(), desc="paths of inputs, or a mapping of variable names to paths")
         declare("flutter_speed", default=True, types=bool, desc="whether the flutter speed is an output")
         declare("search", default=None, desc="airspeeds in which the flutter speed is searched")
         declare("mode", default=None, desc="mode whose boundary is the flutter speed; any by default")
         declare("level", default=0.0, desc="damping ratio that counts as the boundary")
         declare("damping", default=(), desc="modes whose damping at the airspeeds is an output")
         declare("airspeed", default=None, desc="first values of the input airspeed")
-        declare("model_options", default={}, recordable=False, desc="options of the model")
 
     def setup(self) -> None:
         """Add inputs, outputs and partial derivatives.
@@ -122,17 +167,11 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         InputError
             For an unknown path or mode, airspeeds that are missing, or when no output is asked for.
         """
-        case = self.options["case"]
-        self._case = case if isinstance(case, Case) else load_case(case)
-        self._paths = self._paths_by_name()
+        self._add_inputs()
         self._damping = {f"damping_{variable_name(mode)}": mode for mode in self._listed("damping", "modes")}
         self._found: dict[tuple[float, ...], Boundary] = {}  # by the inputs of the last flutter search
         if not (self.options["flutter_speed"] or self._damping):
             raise InputError("damping", None, "must name a mode, or flutter_speed must be true")
-        numbers = design_inputs(self._case)
-        for name, path in self._paths.items():
-            number = numbers[path]
-            self.add_input(name, float(number.si), units=_UNITS.get(number.unit, number.unit), desc=path)
         if self.options["flutter_speed"]:
             self.add_output("flutter_speed", 100.0, units="m/s")
             self.add_output("flutter_frequency", 10.0, units="rad/s")
@@ -209,28 +248,6 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
         except InputError as error:
             raise om.AnalysisError(str(error)) from None
 
-    @property
-    def _model_options(self) -> dict[str, Any]:
-        return dict(self.options["model_options"])
-
-    def _paths_by_name(self) -> dict[str, str]:
-        """Return the paths of the inputs by the names of their variables."""
-        given = self._listed("inputs", "paths")
-        paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
-        known = design_inputs(self._case)
-        for path in paths.values():
-            check_known("inputs", path, known, "input")
-        return paths
-
-    def _listed(self, option: str, names: str) -> Any:
-        """Return an option that lists names of a kind; refuse a text, which would be a list of its letters."""
-        if isinstance(given := self.options[option], str):
-            raise InputError(option, given, f"must be a list of {names}")
-        return given
-
-    def _varied(self, inputs: Mapping[str, NDArray[np.float64]]) -> Case:
-        return self._case.vary({path: inputs[name].item() for name, path in self._paths.items()})
-
     def _key(self, inputs: Mapping[str, NDArray[np.float64]]) -> tuple[float, ...]:
         return tuple(inputs[name].item() for name in self._paths)
 
@@ -285,3 +302,103 @@ class WhirlFlutter(om.ExplicitComponent):  # type: ignore[misc]
             if missing.any():
                 raise InputError("damping", mode, f"is no mode at {line[missing][0]:.6g} m/s")
         return found.isel(airspeed=places)
+
+
+class GrowthConstraint(_OfCase):
+    """Aggregated growth of all roots of a case, a constraint with exact partial derivatives.
+
+    Inputs are named by their paths (`variable_name`) and have SI units, which OpenMDAO converts. The output is growth
+    in 1/s, at or below zero where every root at every airspeed has the damping wanted; stable designs have it as well
+    as unstable ones: see `proprotor.stability.growth_constraint.growth_constraint`.
+
+    A point that cannot be analysed raises `openmdao.api.AnalysisError` with the reason, and optimisers can step back
+    from the point: an airspeed without a trim, or a number that is not physical.
+
+    Parameters
+    ----------
+    case : Case or str
+        A case, or the name or path of a deck.
+    inputs : sequence of str, or mapping of str to str
+        Paths of inputs (`proprotor.deck.vary.design_inputs`), or paths by the names of their variables.
+    airspeed : airspeeds in m/s, text such as "100:360:10kt", or pint quantity
+        Where damping is wanted.
+    level : float
+        Damping ratio that every root must have, dimensionless.
+    sharpness : float
+        How closely the largest growth is followed, s.
+    model_options : mapping
+        See `proprotor.rotor.options.Options`.
+
+    Raises
+    ------
+    InputError
+        In setup, for an unknown path, or when no airspeed is given.
+    """
+
+    def initialize(self) -> None:
+        """Declare the options."""
+        super().initialize()
+        declare = self.options.declare
+        declare("airspeed", default=None, desc="airspeeds at which damping is wanted")
+        declare("level", default=0.0, desc="damping ratio that every root must have")
+        declare("sharpness", default=SHARPNESS, desc="how closely the largest growth is followed, s")
+
+    def setup(self) -> None:
+        """Add inputs, the output and its partial derivatives.
+
+        Raises
+        ------
+        InputError
+            For an unknown path, or when no airspeed is given.
+        """
+        if self.options["airspeed"] is None:
+            raise InputError("airspeed", None, "must be given for the growth")
+        self._add_inputs()
+        self.add_output("growth", -1.0, units="1/s")
+        if self._paths:
+            self.declare_partials("growth", list(self._paths))
+
+    def compute(self, inputs: Mapping[str, NDArray[np.float64]], outputs: Any) -> None:
+        """Find the aggregated growth.
+
+        Parameters
+        ----------
+        inputs : mapping of str to array
+            SI, by the names of the variables.
+        outputs : mapping of str to array
+            Filled: growth in 1/s.
+
+        Raises
+        ------
+        openmdao.api.AnalysisError
+            When the point cannot be analysed, with the reason.
+        """
+        outputs["growth"] = self._constraint(inputs, ()).constraint.item()
+
+    def compute_partials(self, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
+        """Find exact derivatives by complex steps of the equations.
+
+        Parameters
+        ----------
+        inputs : mapping of str to array
+            SI, by the names of the variables.
+        partials : mapping
+            Filled, by output and input, SI.
+
+        Raises
+        ------
+        openmdao.api.AnalysisError
+            When the point cannot be analysed, with the reason.
+        """
+        rates = self._constraint(inputs, tuple(self._paths.values())).derivative
+        for name, path in self._paths.items():
+            partials["growth", name] = rates.sel(input=path).item()
+
+    def _constraint(self, inputs: Mapping[str, NDArray[np.float64]], wrt: tuple[str, ...]) -> Dataset:
+        """Return the constraint with its derivatives by some inputs."""
+        asked = {name: self.options[name] for name in ("level", "sharpness")}
+        try:
+            case = self._varied(inputs)
+            return growth_constraint(case, self.options["airspeed"], wrt, **asked, **self._model_options)
+        except InputError as error:
+            raise om.AnalysisError(str(error)) from None

@@ -90,9 +90,10 @@ def altered_deck(
     for section, entries in sorted(sections.items()):
         lines += ["", f"[{section}]", *entries]
     # A list replaces the list of the base, so all entries are written.
-    if any("[" in path for path in changed):
-        for mode in tables["support"]["modes"]:
-            lines += ["", "[[support.modes]]", *(f"{name} = {toml(value)}" for name, value in mode.items())]
+    for listed in dict.fromkeys(path.partition("[")[0] for path in changed if "[" in path):
+        whole: Any = functools.reduce(operator.getitem, listed.split("."), tables)
+        for one in whole:
+            lines += ["", f"[[{listed}]]", *(f"{name} = {toml(value)}" for name, value in one.items())]
     return "\n".join(lines) + "\n"
 
 

@@ -10,7 +10,7 @@ from proprotor_equations import FIXED_COORDINATES
 from proprotor.explore.analysis import LiveModes
 from proprotor.plots.line_of_sweep import with_gaps
 from proprotor.plots.style import COLOURS
-from proprotor.rotor.motions import SECOND, name_list
+from proprotor.rotor.motions import SECOND, is_of_loop, name_list
 
 _DASHES = ("solid", "dashed", "dotted")
 _ROTOR_NAMES = frozenset(name_list(FIXED_COORDINATES))  # modes with other names are modes of the support
@@ -32,7 +32,11 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     places = range(len(found.names))
     turns = found.eigenvalue / rotor_speed
     unstable = {one.mode for one in found.unstable}
-    broad = [name in unstable or name.removesuffix(SECOND) not in _ROTOR_NAMES for name in found.names]
+    broad = [
+        name in unstable
+        or not (name.removesuffix(SECOND) in _ROTOR_NAMES or is_of_loop(name.removesuffix(SECOND)))
+        for name in found.names
+    ]
     values = zip(found.leaps.T, found.damping.T, turns.real.T, np.abs(turns.imag).T, strict=True)
     lines = [with_gaps(leaps, found.airspeed / speed_unit, *of_mode) for leaps, *of_mode in values]
     axes = ("airspeed", "damping", "growth", "frequency")

@@ -22,6 +22,8 @@ configuration, and the stamp that every result has.
     mast                 a mast that twists between a rotor and its engine
     several_rotors       several rotors on a support
     massless             motions that move no mass, which have no eigenvalue
+    sensors              what a sensor reads, by its name
+    closed_loop          control loops closed around a model
     first_order          which points and coordinates have states, and the state matrix
     state_space          A, B, C, D with names
     structural_damping   structural damping at which a model is neutrally stable
@@ -38,14 +40,15 @@ configuration, and the stamp that every result has.
     in_notebook          a case and a model as HTML
     options_of_result    options taken back from a result
 
-The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor` and `support`. One
-deferred import goes down: `LinearModel.modes` calls `stability`.
+The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `files`), `rotor`, `support` and
+`control`. One deferred import goes down: `LinearModel.modes` calls `stability`.
 """
 
+from proprotor.model.closed_loop import close_loops, taken_apart
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.lift_lag import lagging_blade, with_lift_lag
-from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
+from proprotor.model.linear_model import GUSTS, INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.massless import with_reasons
 from proprotor.model.mast import with_mast
@@ -57,6 +60,7 @@ from proprotor.model.theodorsen import at_frequencies
 from proprotor.model.wing_lift_lag import with_wing_lag
 
 __all__ = [
+    "GUSTS",
     "INPUTS",
     "SWASHPLATE",
     "Configuration",
@@ -68,6 +72,7 @@ __all__ = [
     "at_frequencies",
     "batches",
     "blade_comparison",
+    "close_loops",
     "deck_fingerprint",
     "doubts",
     "first_order",
@@ -86,11 +91,13 @@ __all__ = [
     "rotor_model",
     "rotor_share",
     "rotors_on",
+    "sensors",
     "several_rotors",
     "shares",
     "stamp",
     "state_space",
     "structural_damping",
+    "taken_apart",
     "unit_doubts",
     "with_lift_lag",
     "with_mast",

@@ -20,7 +20,7 @@ from proprotor.model.batches import joint_shape
 from proprotor.model.configuration import Configuration
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.pair import shares
-from proprotor.model.quantities import model_quantities, shape_of
+from proprotor.model.quantities import closed_couplings, model_quantities, shape_of
 from proprotor.model.rotor_model import rotor_model
 from proprotor.model.rotor_share import rotor_share, undamped_modes, without_rotors
 from proprotor.rotor.generated import evaluate
@@ -160,7 +160,7 @@ def _couplings_by_harmonic(rotor: Rotor, quantities: Mapping[str, Any]) -> tuple
     for stiffness in (rotor.control_stiffness, rotor.control_stiffness if cyclic is None else cyclic):
         pair = (np.nan, np.nan)
         if stiffness > 0:
-            pair = evaluate(pitch.couplings, {**quantities, "control_stiffness": stiffness})
+            pair = tuple(closed_couplings({**quantities, "control_stiffness": stiffness}).values())
         found += pair
     return tuple(found)
 
@@ -255,13 +255,29 @@ def _masses(case: Configuration) -> Iterator[tuple[str, Any, str, str]]:
     yield "I_βζ", rotor.flap_lag_inertia, "kg m²", "I_ζ + (e_ζ - e_β) S_ζ"
     yield "centre of mass", rotor.blade_first_moment / rotor.blade_mass, "m", "S_b / m_b"
     yield "radius of gyration", np.sqrt(rotor.blade_inertia / rotor.blade_mass), "m", "√(I_b / m_b)"
-    gram = rotor.gram_matrix
-    size = np.sqrt(np.diagonal(gram))
+    gram, arms = rotor.gram_matrix, "1, r, ρ_β, ρ_ζ"
+    if rotor.offset_mass is not None:
+        arms = "1, r, ρ_β, ρ_ζ, x cos τ, x sin τ"
+        yield "∫ m x", rotor.offset_mass.offset_cosine_moment, "kg m", "outboard of the lag hinge, x cos τ"
+        yield (
+            "∫ m x ρ_ζ",
+            rotor.offset_mass.offset_cosine_lag_inertia,
+            "kg m²",
+            "outboard of the lag hinge, x cos τ",
+        )
+        yield (
+            "∫ m x²",
+            rotor.offset_mass.inertia,
+            "kg m²",
+            "the part of the pitch inertia that comes from the offset",
+        )
+    diagonal = np.diagonal(gram)
+    size = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     yield (
         "smallest eigenvalue of the Gram matrix",
         np.linalg.eigvalsh(gram / np.outer(size, size))[0],
         "",
-        ("of the arms 1, r, ρ_β, ρ_ζ scaled to a unit diagonal; below zero no blade has these integrals"),
+        f"of the arms {arms} scaled to a unit diagonal; below zero no blade has these integrals",
     )
 
 

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.control.control_loop import ControlLoop, loop_text
 from proprotor.datum import Datum
 from proprotor.errors import InputError
+from proprotor.model.closed_loop import close_loops
 from proprotor.model.floquet import checked
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
@@ -60,6 +62,8 @@ class Configuration:
         The deck of the configuration, from which `proprotor.deck.vary` builds other designs.
     given : mapping of str to Datum
         The numbers of `sources` that the deck gives.
+    loops : tuple of ControlLoop
+        Control loops that every model of the configuration has closed.
     """
 
     name: str
@@ -76,6 +80,7 @@ class Configuration:
     left: Side | None = None
     deck: Any = None
     given: Mapping[str, Datum] = field(default_factory=dict)
+    loops: tuple[ControlLoop, ...] = ()
 
     def __repr__(self) -> str:
         """Return the rotor, its support and the doubtful numbers, in a few lines."""
@@ -87,6 +92,7 @@ class Configuration:
             f"  {rotors}: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
+        lines += [f"  control loop {loop_text(loop)}" for loop in self.loops]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
 
     def _repr_html_(self) -> str:
@@ -108,13 +114,35 @@ class Configuration:
         Returns
         -------
         LinearModel
-            M, C, K (..., n, n), SI, on the coordinates of support and rotor; failed points are NaN, with the
-            reason in `trim`. A point whose mass matrix has no inverse has matrices, but no modes.
+            M, C, K (..., n, n), SI, on the coordinates of support and rotor, then of the control loops, which are
+            closed; failed points are NaN, with the reason in `trim`. A point whose mass matrix has no inverse has
+            matrices, but no modes.
 
         Raises
         ------
         InputError
             For an unknown option, a malformed airspeed, or a rotor that the options do not allow.
+        """
+        return close_loops(self.open_loop(airspeed, **options), self.loops)
+
+    def open_loop(self, airspeed: Any, **options: Any) -> LinearModel:
+        """Return the model without its control loops, see `linearize`.
+
+        Parameters
+        ----------
+        airspeed : float, array, text, pint quantity or xarray.DataArray
+            m/s, as for `linearize`.
+        **options
+            See `proprotor.rotor.options.Options`.
+
+        Returns
+        -------
+        LinearModel
+
+        Raises
+        ------
+        InputError
+            As `linearize`.
         """
         if parse_options(self.model_options(options)).is_tilted:
             return checked(self.around(airspeed, **options), self.passage)
@@ -137,16 +165,19 @@ class Configuration:
         Raises
         ------
         InputError
-            As `linearize`; without a shaft angle and a load factor, and for a free aircraft.
+            As `linearize`; without a shaft angle and a load factor, for a free aircraft, and with control loops.
         """
         if not parse_options(self.model_options(options)).is_tilted:
             raise InputError("load_factor", 1, "or shaft_angle must be another than in straight axial flight")
+        name = "load_factor" if np.all(np.equal(options.get("shaft_angle", 0), 0)) else "shaft_angle"
         if isinstance(self.support, Airframe):
             rule = (
                 "goes with a rotor on a support that stands still: a free aircraft that flies at an angle turns its "
                 "weight and the lift of its wing as it rolls, which the model leaves out"
             )
-            name = "load_factor" if np.all(np.equal(options.get("shaft_angle", 0), 0)) else "shaft_angle"
+            raise InputError(name, options.get(name), rule)
+        if self.loops:
+            rule = "goes without control loops: what averaging leaves out is known for the open loop alone"
             raise InputError(name, options.get(name), rule)
         return self._linearized(airspeed, options, around=True)
 

@@ -22,10 +22,15 @@ def deck_fingerprint(case: Configuration) -> str:
     """
     if case.deck is None:
         parts = [case.rotor, case.operation, case.support, case.frequencies, case.drive_train, case.left]
-        return short_fingerprint(parts)
+        return short_fingerprint([*parts, *_loops(case)])
     numbers = {path: [_number(n.si), n.r_over_R] for path, n in case.given.items() if not _names_files(n.si)}
     airfoil_file = case.rotor.airfoil if "rotor.airfoil.table" in case.given else None
-    return short_fingerprint([numbers, _choices(case.deck), airfoil_file])
+    return short_fingerprint([numbers, _choices(case.deck), airfoil_file, *_loops(case)])
+
+
+def _loops(case: Configuration) -> list[Any]:
+    """Return what the control loops of a case are, in a list that is empty without loops."""
+    return [[vars(loop) | {"law": vars(loop.law)} for loop in case.loops]] if case.loops else []
 
 
 def short_fingerprint(content: Any) -> str:
@@ -52,6 +57,8 @@ def _choices(section: Any) -> dict[str, Any]:
             found[name] = {} if name == "case" else _choices(entry)
         elif isinstance(entry, list | tuple):
             found[name] = [_choices(one) if hasattr(type(one), "model_fields") else one for one in entry]
+        elif name == "variants":
+            found[name] = {key: _choices(one) for key, one in entry.items()}
         elif isinstance(entry, str | bool | int | dict) or entry is None:
             found[name] = entry
         elif _names_files(getattr(entry, "si", None)):

@@ -121,7 +121,7 @@ def some_points(model: LinearModel, points: Any) -> LinearModel:
     """Return the model at some of its points, with M, C and K only."""
     parts = {name: getattr(model, name)[points] for name in "MCK"}
     shapes = None if model.shapes is None else model.shapes[points]
-    none: dict[str, Any] = dict.fromkeys(("B", "hub", "rotor", "left", "left_hub"))
+    none: dict[str, Any] = dict.fromkeys(("B", "hub", "rotor", "left", "left_hub", "feedback"))
     return replace(model, **parts, **none, shapes=shapes)
 
 

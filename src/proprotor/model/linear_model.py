@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from proprotor_equations import FIXED_GUSTS
@@ -24,7 +24,23 @@ if TYPE_CHECKING:
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
+GUSTS = tuple(FIXED_GUSTS)
 _AZIMUTHS = tuple(in_half(half, ROTOR_SPEED) for half in reversed(HALVES))
+
+
+class Feedback(NamedTuple):
+    """What control loops add to the inputs of a model (..., inputs, n), by the motion of each coordinate.
+
+    displacement, rate, acceleration : in the input's unit per m or rad, per s and per s²
+    """
+
+    displacement: Array
+    rate: Array
+    acceleration: Array
+
+    def at(self, places: list[int]) -> Feedback:
+        """Return the feedback from some of the coordinates."""
+        return Feedback(*(part[..., places] for part in self))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -80,7 +96,9 @@ class LinearModel:
         Of a rotor alone at an angle or in a pull-up: what its blades and its gimbal do around the turn, see
         `proprotor.rotor.moving_blade`.
     inputs : tuple of str
-        Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on.
+        Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on; then the support's.
+    feedback : Feedback, optional
+        Of a model with control loops, which its matrices contain: `proprotor.model.closed_loop`.
     """
 
     M: Array
@@ -104,6 +122,7 @@ class LinearModel:
     left_hub: Array | None = None
     inputs: tuple[str, ...] = INPUTS
     swing: Motion | None = None
+    feedback: Feedback | None = None
 
     def __repr__(self) -> str:
         """Return the coordinates, the shape of the batch and its failed and doubtful points, in a few lines."""
@@ -232,6 +251,7 @@ class LinearModel:
         apart = (tuple(name for name in group if name in dofs) for group in self.apart)
         more: dict[str, Any] = {"rates": rates, "rigid_body": rigid, "left_hub": left}
         more["apart"] = tuple(group for group in apart if group)
+        more["feedback"] = None if self.feedback is None else self.feedback.at(places)
         if self.symmetry:
             more["symmetry"] = tuple(self.symmetry[place] for place in places)
         return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts, **more)

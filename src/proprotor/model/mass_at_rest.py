@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from proprotor_equations import FIXED_COORDINATES, inertia, multiblade, pitch
+from proprotor_equations import FIXED_COORDINATES, inertia, multiblade, offset_mass, pitch
 
 from proprotor.model.quantities import of_rotor
 from proprotor.rotor.generated import evaluate
@@ -32,6 +32,10 @@ def mass_at_rest(rotor: Rotor) -> Array:
     quantities = of_rotor(rotor) | dict.fromkeys(UNKNOWNS, 0.0)
     quantities |= evaluate(inertia.trim_integrals, quantities)._asdict()
     blade = evaluate(inertia.mass, quantities) + evaluate(pitch.mass, quantities)
+    if rotor.offset_mass is not None:
+        quantities |= {"pitch": 0.0}
+        quantities |= evaluate(offset_mass.trim_integrals, quantities)._asdict()
+        blade = blade + evaluate(offset_mass.mass, quantities)
     places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
     found = np.asarray(evaluate(multiblade.mass, quantities, blade)[..., places[:, None], places])
     found.flags.writeable = False

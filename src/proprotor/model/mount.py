@@ -57,7 +57,8 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])
     additions = {"M": mass, "C": support.damping, "K": support.stiffness}
     parts = (rotor_alone.M, support.hub, *additions.values())
-    shape = joint_shape(*(matrix.shape[:-2] for matrix in parts))
+    loads = [] if support.loads is None else [support.loads]
+    shape = joint_shape(*(matrix.shape[:-2] for matrix in (*parts, *loads)))
     rotor_alone = broadcast(rotor_alone, shape)
     matrices: dict[str, Any] = {
         name: _on_support(getattr(rotor_alone, name), support.hub, addition)
@@ -66,6 +67,8 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     if rotor_alone.B is not None:
         at_hub = np.swapaxes(support.hub, -1, -2) @ rotor_alone.B[..., : len(HUB), :]
         matrices["B"] = np.concatenate([at_hub, rotor_alone.B[..., len(HUB) :, :]], axis=-2)
+        if support.loads is not None:
+            matrices["B"] = _with_inputs(matrices["B"], support.loads)
     still = np.zeros((*support.hub.shape[:-1], len(own)))
     coupled = replace(
         rotor_alone,
@@ -76,8 +79,16 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
         mass_at_rest=None,
         shapes=at_points(support.shapes, shape, 2),
         trim=with_warning(rotor_alone.trim, at_points(support.warning, shape, 0)),
+        inputs=(*rotor_alone.inputs, *(support.inputs if rotor_alone.B is not None else ())),
     )
     return refused_where(refusal, with_reasons(coupled), support)
+
+
+def _with_inputs(columns: Array, loads: Array) -> Array:
+    """Return the columns (..., n, inputs) of a rotor's inputs and of its support's, which load the support alone."""
+    shape, more = columns.shape[:-2], columns.shape[-2] - loads.shape[-2]
+    own = np.pad(loads, [(0, 0)] * (loads.ndim - 2) + [(0, more), (0, 0)])
+    return np.concatenate([columns, np.broadcast_to(own, (*shape, *own.shape[-2:]))], axis=-1)
 
 
 def check_hub(field: str, model: LinearModel) -> None:

@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from proprotor_equations import pitch
+from proprotor_equations import offset_mass, pitch
 
 from proprotor.model.batches import joint_shape
 from proprotor.rotor.airfoil import Airfoil
@@ -17,11 +17,13 @@ from proprotor.rotor.kept import kept
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options
 from proprotor.rotor.rotor import Rotor
+from proprotor.rotor.trim import has_offset_mass
 from proprotor.typing import Array
 
 COUPLINGS = ("pitch_flap_coupling", "pitch_lag_coupling")
 _AIR = ("rotor_speed", "density", "speed_of_sound")
-_ALONG_THE_BLADE = ("airfoil", "chord", "twist")
+_ALONG_THE_BLADE = ("airfoil", "chord", "twist", "aerodynamic_center")
+_NO_NUMBERS = ("offset_mass", "propeller_inertia")  # of which others are made
 _HINGE_INERTIAS = ("flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
 _SOFTEST_SPRING = 1e-100  # relative to the other spring: a free hinge, without a division by zero in series
 
@@ -38,7 +40,10 @@ def batch_shape(rotor: Rotor, operation: Operation, airspeed: Array, options: Op
 @kept
 def shape_of(rotor: Rotor) -> tuple[int, ...]:
     """Return the shape of all arrays among the numbers of a rotor, broadcast together; () for a single design."""
-    inputs = [getattr(rotor, entry.name) for entry in fields(rotor) if entry.name != "airfoil"]
+    inputs = [
+        getattr(rotor, entry.name) for entry in fields(rotor) if entry.name not in ("airfoil", "offset_mass")
+    ]
+    inputs += [] if rotor.offset_mass is None else list(vars(rotor.offset_mass).values())
     leading = [np.empty(np.shape(value[0])[:-1]) for value in inputs if isinstance(value, tuple)]
     inputs = [value for value in inputs if not isinstance(value, tuple) and not callable(value)] + leading
     if isinstance(rotor.airfoil, Airfoil):
@@ -79,15 +84,19 @@ def _numbers_of(rotor: Rotor) -> dict[str, Any]:
     given = of_rotor(rotor)
     softest = _SOFTEST_SPRING * np.maximum(np.maximum(rotor.flap_stiffness, rotor.lag_stiffness), 1.0)
     given |= {name: np.maximum(given[name], softest) for name in ("flap_stiffness", "lag_stiffness")}
-    return given | {"propeller_moment": float(rotor.propeller_moment)}
+    return given | {"propeller_moment": rotor.propeller_share, "beside_axis": rotor.is_beside_axis}
 
 
 def of_rotor(rotor: Rotor) -> dict[str, Any]:
     """Return the rotor's own numbers, without the properties that are distributed along the blade."""
-    names = [entry.name for entry in fields(rotor) if entry.name not in _ALONG_THE_BLADE]
+    apart = (*_ALONG_THE_BLADE, *_NO_NUMBERS)
+    names = [entry.name for entry in fields(rotor) if entry.name not in apart]
     given = {name: getattr(rotor, name) for name in (*names, *_HINGE_INERTIAS)}
     cyclic = given.pop("cyclic_control_stiffness")
     excess = 0.0 if cyclic is None else cyclic - rotor.control_stiffness
+    if rotor.offset_mass is not None:
+        given |= vars(rotor.offset_mass)
+        given["pitch_inertia"] = rotor.pitch_inertia - rotor.offset_mass.inertia  # what is left is lumped
     return given | {"cyclic_control_stiffness_excess": excess}
 
 
@@ -98,5 +107,14 @@ def couplings(options: Options, quantities: Mapping[str, Any]) -> dict[str, Any]
     """
     if options.pitch != "coupling":
         return dict.fromkeys(COUPLINGS, 0.0)
-    closed_form: dict[str, Any] = evaluate(pitch.couplings, quantities)._asdict()
+    closed_form: dict[str, Any] = closed_couplings(quantities)
     return closed_form | {name: quantities[name] for name in COUPLINGS if name in quantities}
+
+
+def closed_couplings(quantities: Mapping[str, Any]) -> dict[str, Any]:
+    """Return K_Pβ and K_Pζ by name: of the springs, and of mass beside the pitch axis."""
+    found: dict[str, Any] = evaluate(pitch.couplings, quantities)._asdict()
+    if not has_offset_mass(quantities):
+        return found
+    beside = evaluate(offset_mass.couplings, quantities)._asdict()
+    return {name: value + beside[name] for name, value in found.items()}

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from proprotor.control.control_loop import loop_text
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.options_in_force import chosen, in_force, options_in_result, options_text
 from proprotor.model.provenance import reservations
@@ -25,8 +26,21 @@ if TYPE_CHECKING:
     from proprotor.model.linear_model import LinearModel
 
 Stamp = Mapping[str, str]
+_NO_LOOPS = "none"  # among the control loops of a stamp
 _AIR = ("operation.density", "operation.altitude", "operation.temperature_offset")
-NAMES = ("case", "title", "deck", "air_density", "options", "reservations", "case_warnings", "made_by")
+NAMES = (
+    *(
+        "case",
+        "title",
+        "deck",
+        "air_density",
+        "options",
+        "control",
+        "reservations",
+        "case_warnings",
+        "made_by",
+    ),
+)
 
 
 class Origin(NamedTuple):
@@ -71,15 +85,26 @@ def line(found: Mapping[Any, Any]) -> str:
         return ""
     own = chosen(options_in_result(found))
     options = f"options: {options_text(own)}" if own else "default options"
+    closed = f", control loops closed: {loops}" if (loops := _loops(found)) else ""
     if "case" in found:
-        return f"Case {found['case']} ({found['deck']}), {options}."
+        return f"Case {found['case']} ({found['deck']}), {options}{closed}."
     return f"{options.capitalize()}."
 
 
+def _loops(found: Mapping[Any, Any]) -> str:
+    """Return the control loops of a result in words; empty without any."""
+    loops = str(found.get("control", _NO_LOOPS))
+    return "" if loops == _NO_LOOPS else loops
+
+
 def unusual_options(found: Mapping[Any, Any]) -> list[str]:
-    """Return a sentence with the options that are not defaults, in a list that is empty if all are defaults."""
+    """Return a sentence with the options that are not defaults, and one with the control loops, in a list.
+
+    The list is empty if all options are defaults and no loop is closed.
+    """
     own = chosen(options_in_result(found)) if "options" in found else {}
-    return [f"Options: {options_text(own)}."] if own else []
+    closed = [f"Control loops closed: {loops}."] if (loops := _loops(found)) else []
+    return [*([f"Options: {options_text(own)}."] if own else []), *closed]
 
 
 def _stamp(origin: Origin, varied: Collection[str] = ()) -> dict[str, str]:
@@ -90,6 +115,7 @@ def _stamp(origin: Origin, varied: Collection[str] = ()) -> dict[str, str]:
         return own
     density = one_density(case, varied)
     own |= {} if density is None else {"air_density": repr(density)}
+    own |= {"control": "; ".join(map(loop_text, case.loops)) or _NO_LOOPS}
     return own | {
         "case": case.name,
         "title": case.title or case.name,

@@ -19,7 +19,7 @@ from proprotor.model.first_order import (
     state_matrix,
     without_massless,
 )
-from proprotor.model.linear_model import LinearModel
+from proprotor.model.linear_model import Feedback, LinearModel
 from proprotor.model.pair import halves_of, hub_inputs, hub_rows
 from proprotor.model.stamp import Stamp, of_model
 from proprotor.needs import need
@@ -171,7 +171,7 @@ def _outputs(
     blocks: list[_Block] = []
     for part in _hubs(model):
         hub = part.to_rotor[..., : len(HUB), :]
-        loads, loads_by_input = _hub_loads(part, motion, acceleration_by_input)
+        loads, loads_by_input = _hub_loads(part, motion, acceleration_by_input, model.feedback)
         known = _with_displacement(hub, displacement)
         blocks += [
             (part.names(tuple(HUB[axis] for axis in known)), (hub @ displacement)[..., known, :], None),
@@ -220,13 +220,17 @@ def _own_motion(model: LinearModel, own: list[int], displacement: Array, rate: A
     ]
 
 
-def _hub_loads(part: _Loads, motion: _Rows, acceleration_by_input: Array) -> tuple[Array, Array]:
+def _hub_loads(
+    part: _Loads, motion: _Rows, acceleration_by_input: Array, feedback: Feedback | None
+) -> tuple[Array, Array]:
     """Return the perturbation of the rotor's loads on the hub by states and inputs.
 
-    These loads are minus the hub rows of the rotor alone, plus the hub rows of its inputs.
+    These loads are minus the hub rows of the rotor alone, plus the hub rows of its inputs, to which control loops add.
     """
     displacement, rate, acceleration = motion
     rows = part.rows
+    if feedback is not None:
+        rows = {name: rows[name] - part.inputs @ own for name, own in zip("KCM", feedback, strict=True)}
     loads = -(rows["M"] @ acceleration + rows["C"] @ rate + rows["K"] @ displacement)
     return loads, part.inputs - rows["M"] @ acceleration_by_input
 
@@ -236,7 +240,7 @@ def _hubs(model: LinearModel) -> list[_Loads]:
     if model.left_hub is not None:
         rows, inputs = {name: hub_rows(model, name) for name in "MCK"}, hub_inputs(model)
         return [
-            _Loads(half, to_rotor, {name: rows[name][half] for name in "MCK"}, inputs[half])
+            _Loads(half, to_rotor, {name: rows[name][half] for name in "MCK"}, _of_all(model, inputs[half]))
             for half, to_rotor in halves_of(model)
         ]
     rotor, to_rotor = _rotor_alone(model)
@@ -246,7 +250,13 @@ def _hubs(model: LinearModel) -> list[_Loads]:
         )
     assert rotor.B is not None  # the mounted model has inputs, so its rotor has too
     of_hub = {name: getattr(rotor, name)[..., : len(HUB), :] @ to_rotor for name in "MCK"}
-    return [_Loads("", to_rotor, of_hub, rotor.B[..., : len(HUB), :])]
+    return [_Loads("", to_rotor, of_hub, _of_all(model, rotor.B[..., : len(HUB), :]))]
+
+
+def _of_all(model: LinearModel, inputs: Array) -> Array:
+    """Return the hub rows of all inputs of a model (..., 6, inputs): those of its support do not load the rotor."""
+    more = len(model.inputs) - inputs.shape[-1]
+    return np.pad(inputs, [(0, 0)] * (inputs.ndim - 1) + [(0, more)])
 
 
 def _rotor_alone(model: LinearModel) -> tuple[LinearModel, Array]:

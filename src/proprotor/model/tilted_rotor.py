@@ -26,7 +26,7 @@ from proprotor.rotor.options import Options
 from proprotor.rotor.periodic_trim import HarmonicBalance, PeriodicTrim, periodic_trim
 from proprotor.rotor.rotor import Rotor
 from proprotor.rotor.section_loads import BladeSections
-from proprotor.rotor.trim import Target, Trim
+from proprotor.rotor.trim import Target, Trim, has_offset_mass
 from proprotor.rotor.trim_solver import Settled
 from proprotor.typing import Array
 
@@ -92,6 +92,10 @@ def tilted_rotor(
         airspeed, shaft_angle and load_factor.
     n_blades : int
     """
+    if sections.beside_axis or has_offset_mass(settled.quantities):
+        name = "load_factor" if np.all(np.equal(options.shaft_angle, 0)) else "shaft_angle"
+        rule = "goes with blades whose mass and aerodynamic centre lie on the pitch axis"
+        raise InputError(name, getattr(options, name), rule)
     rows = settled.rows
     own = {name: value[rows] for name, value in flight.items()}
     load = np.asarray(target.load)

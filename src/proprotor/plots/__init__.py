@@ -5,6 +5,9 @@ round numbers, and the motion of points in a mode.
 
     frequency_and_damping campbell root_locus participation mode_shape    a sweep, or one of its modes
     attribution tornado stability_map boundary_against study_results      what moves a mode or a boundary
+    envelope            onsets of an envelope over equivalent airspeed and altitude
+    gust_spectra time_response modal_comparison    responses, and measured modes beside a model
+    margins             margins of control loops over airspeed
     blade_frequencies   a hinged blade beside an elastic one: frequencies over collective and rotor speed
     points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
@@ -29,12 +32,17 @@ from proprotor.plots.blade_frequencies import plot_blade_frequencies
 from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.plots.campbell import plot_campbell
 from proprotor.plots.canvas import rests_on
+from proprotor.plots.envelope import plot_envelope
 from proprotor.plots.frequency_and_damping import plot_damping, plot_frequency, plot_sweep
+from proprotor.plots.gust_spectra import plot_gust_spectra
+from proprotor.plots.margins import plot_margins
+from proprotor.plots.modal_comparison import plot_mac
 from proprotor.plots.mode_shape import plot_mode_shape
 from proprotor.plots.participation import plot_participation
 from proprotor.plots.root_locus import plot_root_locus
 from proprotor.plots.stability_map import plot_stability_map
 from proprotor.plots.study_results import plot_distribution, plot_sobol
+from proprotor.plots.time_response import plot_time_response
 from proprotor.plots.tornado import plot_sensitivity
 
 __all__ = [
@@ -50,7 +58,11 @@ __all__ = [
     "plot_campbell",
     "plot_damping",
     "plot_distribution",
+    "plot_envelope",
     "plot_frequency",
+    "plot_gust_spectra",
+    "plot_mac",
+    "plot_margins",
     "plot_mode_shape",
     "plot_participation",
     "plot_root_locus",
@@ -58,6 +70,7 @@ __all__ = [
     "plot_sobol",
     "plot_stability_map",
     "plot_sweep",
+    "plot_time_response",
     "rests_on",
     "style",
 ]

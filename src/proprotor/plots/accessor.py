@@ -16,18 +16,26 @@ from proprotor.model import stamp
 from proprotor.model.doubts import map_doubts, reasons_for_doubt
 from proprotor.tables.boundary_table import boundary_records, input_of
 from proprotor.tables.csv_text import csv_of
+from proprotor.tables.envelope_table import envelope_records
 from proprotor.tables.study_table import StudyTable
 from proprotor.tables.sweep_table import SweepTable
 from proprotor.typing import Axes, Dataset, Figure
 
 # Kinds of results: a variable or an attribute that no other kind has, and the plots, the usual one first.
 _KINDS = {
+    "turbulence": ("gust_psd", ("plot_gust_spectra",)),
+    "single gusts": ("gust", ("plot_time_response",)),
+    "time response": ("input_over_time", ("plot_time_response",)),
+    "modes beside a test": ("pair_mac", ("plot_mac",)),
     "study": ("study", ("plot_distribution",)),
     "indices": ("first_half_interval", ("plot_sobol",)),
     "distribution": ("at_least", ()),
+    "growth constraint": ("constraint", ()),
+    "envelope": ("damping_onset", ("plot_envelope",)),
     "sensitivity": ("derivative", ("plot_sensitivity",)),
     "attribution": ("contribution", ("plot_attribution",)),
     "stability map": ("boundary_eigenvalue", ("plot_stability_map",)),
+    "margins": ("disk_margin", ("plot_margins",)),
     "boundaries": ("first_branch", ("plot_boundary_against",)),
     "sweep": (
         "tracking_quality",
@@ -135,8 +143,10 @@ class Results:
         if self.kind == "boundaries":
             si = str(self._results[input_of(self._results)].attrs["units"])
             return boundary_records(self._results, unit or si)
+        if self.kind == "envelope":
+            return envelope_records(self._results)
         if self.kind != "sweep" or "airspeed" not in self._results.dims:
-            rule = "has no table: a study, a sweep over airspeeds and boundaries against an input have one"
+            rule = "has no table: a study, a sweep over airspeeds, boundaries against an input, an envelope have one"
             raise InputError("results", self.kind, rule)
         if rotor_speed is None:
             raise InputError(

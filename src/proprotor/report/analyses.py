@@ -33,6 +33,9 @@ class Findings:
     causes : Causes, optional
         None if the causes could not be found; `no_causes` says why.
     no_causes : str
+    envelope : xarray.Dataset, optional
+        Result of `Case.envelope`, of a deck that has an envelope; `no_envelope` says why it could not be found.
+    no_envelope : str
     """
 
     sweep: Dataset
@@ -42,6 +45,8 @@ class Findings:
     mode: str
     causes: Causes | None
     no_causes: str = ""
+    envelope: Dataset | None = None
+    no_envelope: str = ""
 
     @property
     def flutters(self) -> bool:
@@ -92,7 +97,17 @@ def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> 
             causes = _causes(case, speed, mode, bool(found.mode), speeds, options)
         except InputError as error:
             no_causes = str(error)
-    return Findings(sweep, trim, found, speed, mode, causes, no_causes)
+    return Findings(sweep, trim, found, speed, mode, causes, no_causes, *_envelope(case, options))
+
+
+def _envelope(case: Case, options: Mapping[str, Any]) -> tuple[Dataset | None, str]:
+    """Return the envelope of a case whose deck has one, or why it could not be found."""
+    if case.deck is None or case.deck.envelope is None:
+        return None, ""
+    try:
+        return case.envelope(**options), ""
+    except InputError as error:
+        return None, str(error)
 
 
 def _damped_least(sweep: Dataset) -> tuple[float, str]:

@@ -23,6 +23,15 @@ from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
 from proprotor.stability.flutter_messages import boundary_record, boundary_row, verdict
 from proprotor.tables.amounts_table import amounts_tables
+from proprotor.tables.envelope_table import (
+    COLUMNS,
+    HEADING,
+    SCOPE,
+    TEXT,
+    envelope_footnotes,
+    envelope_rows,
+    envelope_verdict,
+)
 from proprotor.tables.points import Points
 from proprotor.tables.sensitivity_summary import (
     NEARLY_DEFECTIVE,
@@ -87,6 +96,7 @@ def report_document(
     table = SweepTable(found.sweep, float(case.operation.rotor_speed), unit)
     sections = (
         Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
+        Section("Envelope", tuple(_envelope(found))),
         Section("What was analysed", tuple(_model(case, table, settings))),
         Section("Conventions", (Text(_CONVENTIONS),)),
         Section(
@@ -177,6 +187,20 @@ def _boundaries(case: Case, found: Findings, unit: str, factor: float) -> Iterat
     yield Table("Boundaries by airspeed", columns, tuple(rows), frozenset(columns[:4]))
     if doubts := tuple(f"{MARK} {line}" for line in footnotes(found.flutter.doubts, unit, factor)):
         yield Text(doubts, warning=True)
+
+
+def _envelope(found: Findings) -> Iterator[Any]:
+    """Yield the envelope of a deck that has one: its verdict, its picture, a table of its conditions, its scope."""
+    if found.no_envelope:
+        yield Text((f"The envelope could not be found: {found.no_envelope}.",), warning=True)
+    if found.envelope is None:
+        return
+    yield Text((envelope_verdict(found.envelope),))
+    yield from pictures.of_envelope(found.envelope)
+    yield Table(HEADING, COLUMNS, tuple(envelope_rows(found.envelope)), frozenset(COLUMNS) - set(TEXT))
+    if remarks := tuple(envelope_footnotes(found.envelope)):
+        yield Text(remarks, warning=True)
+    yield Text((SCOPE,))
 
 
 def _model(case: Case, table: SweepTable, settings: Mapping[str, str]) -> Iterator[Table | Text]:

@@ -10,6 +10,7 @@ from proprotor.case import Case
 from proprotor.plots import (
     plot_attribution,
     plot_damping,
+    plot_envelope,
     plot_frequency,
     plot_participation,
     plot_root_locus,
@@ -18,7 +19,7 @@ from proprotor.plots import (
 from proprotor.plots.headless import drawn
 from proprotor.report.document import Picture
 from proprotor.tables.points import DAMPING, FREQUENCY, Points
-from proprotor.typing import Axes
+from proprotor.typing import Axes, Dataset
 
 if TYPE_CHECKING:
     from proprotor.report.analyses import Causes, Findings
@@ -67,6 +68,18 @@ def of_sweep(case: Case, found: Findings, unit: str, points: Points | None = Non
         f"Roots of the modes {names} in the plane of growth and frequency, {across}",
         _svg_of(lambda: plot_root_locus(found.sweep, rotor_speed=omega, unit=unit)),
         0.85,
+    )
+
+
+def of_envelope(found: Dataset) -> Iterator[Picture]:
+    """Yield the picture of an envelope."""
+    conditions = ", ".join(map(str, found.condition.values))
+    yield Picture(
+        "envelope",
+        "Onset of each condition over equivalent airspeed and altitude. The grey area, up to the speed needed of "
+        "normal conditions, must stay free of onsets of these.",
+        f"Lines of the onset of {conditions}, beside V_D, M_D and the speeds needed; the table has the numbers.",
+        _svg_of(lambda: plot_envelope(found)),
     )
 
 

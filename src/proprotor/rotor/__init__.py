@@ -6,6 +6,7 @@ matrices. This room imports `errors`, `typing` and `files`, and the generated eq
 
 What a rotor is:
     rotor                a proprotor: geometry, mass, springs, chord and twist
+    offset_mass          integrals of mass beside the pitch axis
     airfoil              section coefficients; the linear airfoil
     airfoil_regions      airfoils by region of the span
     airfoil_table        an airfoil from tables
@@ -14,6 +15,7 @@ What a rotor is:
     c81_writer           writing such files
     coefficient_surface  the smooth surface through a table
     drive_train          engine and shaft
+    smooth_table         smooth interpolation of a table, with exact derivatives
     blade_frequencies    frequencies given in tables, in place of springs
 
 A rotor from a blade by stations:
@@ -55,8 +57,8 @@ A rotor at an angle to its flight, or in a pull-up:
     periodic_trim        the trim that moves, by harmonic balance
 
 All public names of the modules `around_the_turn`, `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`,
-`from_stations`, `fused`, `generated`, `kept`, `lift_lag`, `motions`, `moving_blade`, `options`, `periodic_trim` and
-`section_loads` belong to the face.
+`from_stations`, `fused`, `generated`, `kept`, `lift_lag`, `motions`, `moving_blade`, `options`, `periodic_trim`,
+`section_loads` and `smooth_table` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -67,9 +69,10 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
-from proprotor.rotor.trim import UNKNOWNS, Target, Trim, trim_target, with_trim
+from proprotor.rotor.trim import UNKNOWNS, Target, Trim, has_offset_mass, trim_target, with_trim
 from proprotor.rotor.trim_solver import Settled, solve_trim
 
 __all__ = [
@@ -84,6 +87,7 @@ __all__ = [
     "BladeFrequencies",
     "BladeStations",
     "DriveTrain",
+    "OffsetMass",
     "Operation",
     "Rotor",
     "SectionCoefficients",
@@ -98,6 +102,7 @@ __all__ = [
     "from_stations",
     "fused",
     "generated",
+    "has_offset_mass",
     "hinged_blade",
     "kept",
     "lift_lag",
@@ -106,6 +111,7 @@ __all__ = [
     "options",
     "periodic_trim",
     "section_loads",
+    "smooth_table",
     "solve_trim",
     "standard_air",
     "trim_target",

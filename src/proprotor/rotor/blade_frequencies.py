@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, check_finite, check_number
+from proprotor.rotor.smooth_table import smooth_table
 from proprotor.typing import Array
 
 _Curve = float | ArrayLike | Callable[[Array], Array]
@@ -102,44 +103,12 @@ class BladeFrequencies:
 
     def _evaluate(self, curve: _Curve, abscissa: Array) -> Array:
         """Return a curve at an abscissa; an imaginary part is followed to first order, for a complex step."""
-        if not np.iscomplexobj(abscissa):
-            return self._value(curve, abscissa)
-        at = np.asarray(abscissa.real)
-        followed: Array = self._value(curve, at) + 1j * self._slope(curve, at) * abscissa.imag
-        return followed
-
-    def _slope(self, curve: _Curve, abscissa: Array) -> Array:
-        """Return the derivative of a curve: exact for a table, by central differences for a function."""
         if callable(curve):
-            step = _STEP * np.maximum(np.abs(abscissa), 1.0)
-            change: Array = self._value(curve, abscissa + step) - self._value(curve, abscissa - step)
-            return change / (2 * step)
+            return _of_function(curve, abscissa)
         if np.ndim(curve) == 0:
-            return np.zeros(np.shape(abscissa))
-        interpolant, held = self._interpolation(curve, abscissa)
-        outside = (abscissa < held) | (abscissa > held)
-        return np.asarray(np.where(outside, 0.0, interpolant.derivative()(held)))
-
-    def _interpolation(self, curve: _Curve, abscissa: Array) -> tuple[Any, Array]:
-        """Return the interpolant of a table, and an abscissa with values beyond the table moved to its ends."""
-        from scipy.interpolate import PchipInterpolator  # here, because it takes long to import
-
-        at = np.asarray(self.at, dtype=float)
-        return PchipInterpolator(at, np.asarray(curve, dtype=float)), np.clip(abscissa, at[0], at[-1])
-
-    def _value(self, curve: _Curve, abscissa: Array) -> Array:
-        """Return a curve at a real abscissa; a function must give positive values."""
-        if callable(curve):
-            values = np.asarray(curve(abscissa), dtype=float)
-            if np.any(np.isfinite(abscissa) & ~(values > 0)):
-                rule = "must be above zero wherever a function gives them"
-                raise InputError("frequencies", float(np.min(values)), rule)
-            return values
-        given = np.asarray(curve, dtype=float)
-        if given.ndim == 0:
-            return np.full(np.shape(abscissa), float(given))
-        interpolant, held = self._interpolation(curve, abscissa)
-        return np.asarray(interpolant(held))
+            return np.full(np.shape(abscissa), float(np.asarray(curve)))
+        assert self.at is not None  # checked with the table
+        return smooth_table(self.at, curve, abscissa)
 
     def rotating(self, collective: Array, airspeed: Array) -> dict[str, Any]:
         """Return rotating frequencies and their rotor speed by the names of the derivation; the arguments broadcast.
@@ -170,3 +139,17 @@ class BladeFrequencies:
         per_rev = {name: self._evaluate(curve, abscissa) for name, curve in curves.items()}
         frequencies = {name: ratio * self.at_rotor_speed for name, ratio in per_rev.items()}
         return {"rotor_speed": self.at_rotor_speed} | frequencies
+
+
+def _of_function(curve: Callable[[Array], Array], abscissa: Array) -> Array:
+    """Return a function, which must give positive values, at an abscissa; its slope comes from central differences."""
+    if not np.iscomplexobj(abscissa):
+        values = np.asarray(curve(abscissa), dtype=float)
+        if np.any(np.isfinite(abscissa) & ~(values > 0)):
+            rule = "must be above zero wherever a function gives them"
+            raise InputError("frequencies", float(np.min(values)), rule)
+        return values
+    at = np.asarray(abscissa.real)
+    step = _STEP * np.maximum(np.abs(at), 1.0)
+    slope = (_of_function(curve, at + step) - _of_function(curve, at - step)) / (2 * step)
+    return np.asarray(_of_function(curve, at) + 1j * slope * abscissa.imag)

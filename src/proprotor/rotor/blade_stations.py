@@ -12,6 +12,7 @@ from proprotor.typing import Array
 _FEWEST = 3
 _ALONG = ("mass_per_length", "flatwise_stiffness", "edgewise_stiffness", "torsion_stiffness")
 _OPTIONAL = {"chord": "above zero", "pitch_inertia_per_length": "not negative"}
+_OPTIONAL |= dict.fromkeys(("mass_offset", "aerodynamic_center"), "")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,6 +39,8 @@ class BladeStations:
         m.
     pitch_inertia_per_length : array (n,), optional
         kg m²/m about the pitch axis.
+    mass_offset, aerodynamic_center : array (n,), optional
+        Centre of the mass, and the quarter chord, in m aft of the pitch axis; on it where they are left out.
     pitch_bearing : float
         Radius of the pitch bearing, m.
     control_stiffness : float
@@ -58,6 +61,8 @@ class BladeStations:
     twist: Array
     chord: Array | None = None
     pitch_inertia_per_length: Array | None = None
+    mass_offset: Array | None = None
+    aerodynamic_center: Array | None = None
     pitch_bearing: float = 0.0
     control_stiffness: float
 

@@ -90,6 +90,7 @@ class EffectiveSections(NamedTuple):
     twist : Π[c τ]/Π[c], rad.
     square, cube : Π[c²]/Π[c]² and Π[c³]/Π[c]³; one station, 1, where chord and twist are those of the stations.
     bent : twist at the stations themselves less the effective twist, rad; one station, 0, where there is none.
+    center : aerodynamic centre at the stations themselves, m aft of the pitch axis; one station where it is constant.
     """
 
     chord: Array
@@ -97,6 +98,7 @@ class EffectiveSections(NamedTuple):
     square: Array = np.ones(1)
     cube: Array = np.ones(1)
     bent: Array = np.zeros(1)
+    center: Array = np.zeros(1)
 
     def each(self, change: Callable[[Array], Array]) -> EffectiveSections:
         """Return the sections after a change to each array."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from proprotor.errors import InputError, check_finite
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.hinged_blade import HingedBlade, hinged_blade
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.rotor import Rotor
 
 _FEWEST = 3
@@ -35,9 +37,9 @@ def rotor_from_stations(
     pitch : array (p,)
         Collectives at 0.75 R, rad, for which the hinged blade is found; at least 3.
     **fields
-        Further fields of `Rotor`: the number of blades and the airfoil at least. Chord and twist are those of the
-        stations, and the blade has air from the first station, unless they are given; any number that was found is
-        replaced by one that is given.
+        Further fields of `Rotor`: the number of blades and the airfoil at least. Chord, twist and the places on the
+        chord are those of the stations, and the blade has air from the first station, unless they are given; any
+        number that was found is replaced by one that is given.
 
     Returns
     -------
@@ -57,8 +59,17 @@ def rotor_from_stations(
     found: dict[str, Any] = dict(blade.numbers)
     found["root_cutout"] = float(stations.radius[0])
     found["twist"] = (stations.radius, stations.angle(stations.radius))
-    if stations.chord is not None:
-        found["chord"] = (stations.radius, stations.chord)
+    for name in ("chord", "aerodynamic_center"):
+        if getattr(stations, name) is not None:
+            found[name] = (stations.radius, getattr(stations, name))
+    if stations.mass_offset is not None:
+        found["offset_mass"] = _offset_mass(stations, found["lag_hinge_offset"])
     if "chord" not in found and "chord" not in fields:
         raise InputError("chord", None, "must be a column of the stations, or be given")
     return FromStations(Rotor(**found | fields), blade)
+
+
+def _offset_mass(stations: BladeStations, hinge: float) -> OffsetMass:
+    """Return the integrals of the mass beside the pitch axis."""
+    mass, offset = (functools.partial(stations.at, name) for name in ("mass_per_length", "mass_offset"))
+    return OffsetMass.along(stations.radius, hinge, mass, offset, stations.angle)

@@ -7,10 +7,11 @@ Python floats, or as complex numbers for derivatives by a complex step.
 A trim has matrices of the same bits in every batch, and as one point: Python and NumPy add and multiply alike, and
 both renderings take the sines of NumPy. Complex numbers agree to rounding.
 
-There are plans for plain rotors, without linkages and drive train, and plans for all rotors. `plans_of` takes those
-for plain rotors where each quantity that a plain rotor has not is the plain number zero. An array goes with the plans
-for all rotors, whatever it holds: so a design has the same bits in every batch that varies the same quantities. The
-bits of a design whose linkage is zero in an array differ by rounding from those of the rotor without a linkage.
+There are plans for plain rotors, without linkages and drive train, plans for rotors with them, and plans for rotors
+with masses or aerodynamic centres beside the pitch axis. `plans_of` takes those for plain rotors where each quantity
+that a plain rotor has not is the plain number zero. An array goes with the plans for other rotors, whatever it holds:
+so a design has the same bits in every batch that varies the same quantities. The bits of a design whose linkage is zero
+in an array differ by rounding from those of the rotor without a linkage.
 """
 
 from __future__ import annotations
@@ -40,7 +41,9 @@ def serves(equations: EquationSet) -> bool:
 
 
 def plans_of(quantities: Quantities) -> ModuleType:
-    """Return the fused functions for a rotor with these quantities: those for plain rotors, or for all."""
+    """Return the fused functions for a rotor with these quantities: those for plain rotors, or for others."""
+    if quantities.get("beside_axis"):
+        return _offset()
     for name in plain.ABSENT:
         value = quantities.get(name, 0.0)
         if not (isinstance(value, float | int) and value == 0):
@@ -52,10 +55,18 @@ _PLAIN: ModuleType = plain
 
 
 def _general() -> ModuleType:
-    """Return the fused functions for all rotors, imported here because few rotors need them."""
+    """Return the fused functions for rotors with linkages and the like, imported here because few rotors need them."""
     from proprotor_equations.fused import general
 
     found: ModuleType = general
+    return found
+
+
+def _offset() -> ModuleType:
+    """Return the fused functions for rotors with something beside the pitch axis, imported here as the general ones."""
+    from proprotor_equations.fused import offset
+
+    found: ModuleType = offset
     return found
 
 

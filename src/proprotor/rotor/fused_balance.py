@@ -235,6 +235,9 @@ def _loads_at_stations(
     along = sections.along.each(lambda part: _stations_first(part, width))
     given["section_pitch"] = air["pitch"] + along.twist
     given |= {"chord": along.chord, "square_ratio": along.square, "cube_ratio": along.cube}
+    if sections.beside_axis:
+        turned = along.center * np.cos(given["section_pitch"]), along.center * np.sin(given["section_pitch"])
+        given["center_along"], given["center_below"] = turned
     loads = room.array((len(plans.SECTION_LOADS), *shape), kind)
     evaluate(plans.section_loads, given, loads)
     return loads

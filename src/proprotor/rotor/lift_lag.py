@@ -78,12 +78,13 @@ def circulation(
         air, coefficients, _ = aerodynamics(here, block, compressibility)
         if lift_slope_only:
             coefficients = SectionCoefficients(lift_coefficient_alpha=coefficients.lift_coefficient_alpha)
-        found = evaluate(lift_lag.change_of_circulation, air | coefficients._asdict())._asdict()
+        change = lift_lag.change_beside_axis if here.beside_axis else lift_lag.change_of_circulation
+        found = evaluate(change, air | coefficients._asdict())._asdict()
         blocks.append((rows, _integrals(here, found, shapes(here.quadrature.stations / block["radius"]))))
     integrals = {name: _at_all_points(blocks, name, points) for name in blocks[0][1]}
     weight, decay = integrals.pop("weight"), integrals.pop("decay")
     whole = {name: value[..., None, :] for name, value in segments.items()}
-    return Circulation(whole | integrals, weight, decay)
+    return Circulation(whole | dict.fromkeys(_MOMENTS, 0.0) | integrals, weight, decay)
 
 
 def _integrals(sections: BladeSections, found: Mapping[str, Array], along: Array) -> dict[str, Array]:
@@ -100,6 +101,8 @@ def _integrals(sections: BladeSections, found: Mapping[str, Array], along: Array
     moments = {}
     for name in _MOMENTS:
         quantity, _, power = name.rpartition("_")
+        if quantity not in found:  # a moment about an axis through the aerodynamic centre
+            continue
         moments[name] = np.stack([moment(found[quantity] * shape, int(power)) for shape in shapes], axis=-2)
     weight, decay = products(found["circulation_weight"]), products(found["circulation_decay"])
     return moments | {"weight": weight, "decay": decay}

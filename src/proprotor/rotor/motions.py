@@ -26,6 +26,8 @@ LAGS = ("slow", "fast")  # states of lift that lags
 LAG_SHAPES = 2  # functions of the radius in which lift lags; tests/model/test_lift_lag.py has their error
 LAGS_PER_BLADE = len(LAGS) * LAG_SHAPES
 _LIFT = re.compile(r"(^| )(slow|fast) lift( \d+)?$")  # stems of their coordinates
+_OF_LOOP = re.compile(r" (law|delay|actuator)( \d+)?(_[ab])?$")
+_OF_LAW = re.compile(r"(.* law(?: \d+)?)_([ab])")  # two states of a control law, which may swing as one pair
 
 
 class Motion(NamedTuple):
@@ -35,9 +37,10 @@ class Motion(NamedTuple):
     ----------
     names : tuple of str
         One name, or the names of the regressive and the progressive mode. A cyclic pair of which only the rates are
-        states, of lift that lags, has one mode.
+        states, of lift that lags, has one mode, and so have two states of a control law.
     places : tuple of int
-        Places of the coordinate, or of the cosine and the sine part, among the coordinates of the model.
+        Places of the coordinate, or of the cosine and the sine part, or of two states, among the coordinates of the
+        model.
     """
 
     names: tuple[str, ...]
@@ -118,12 +121,21 @@ def is_of_rotor(name: str) -> bool:
     return re.sub(r"\d+", "2", half_of(name)[1]) in _names_of_rotors()
 
 
+def is_of_loop(name: str) -> bool:
+    """Return whether a coordinate or mode of a model has the name of a law, a delay or an actuator of a loop."""
+    return bool(_OF_LOOP.search(name))
+
+
 def motions(dofs: tuple[str, ...]) -> list[Motion]:
     """Return the motions of a model, in the order of its coordinates."""
     found = []
     for place, dof in enumerate(dofs):
         partner = dof[:-1] + "s"
-        if _is_cosine(dof) and partner in dofs:
+        of_law = _OF_LAW.fullmatch(dof)
+        if of_law:
+            if of_law[2] == "a":
+                found.append(Motion((of_law[1],), (place, dofs.index(f"{of_law[1]}_b"))))
+        elif _is_cosine(dof) and partner in dofs:
             found.append(Motion(_cyclic_names(dof), (place, dofs.index(partner))))
         elif not (_is_cosine(dof[:-1] + "c") and dof[:-1] + "c" in dofs and dof.endswith("s")):
             found.append(Motion((_single_name(dof),), (place,)))

@@ -17,6 +17,7 @@ from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.effective_sections import EffectiveSections, Line, effective_sections
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.quadrature import Panels, RadialQuadrature, flatten_points, long_panels, short_panels
 from proprotor.typing import Array
 
@@ -27,6 +28,8 @@ MASS_INTEGRALS = (
 _POSITIVE = ("radius", "blade_inertia", "flap_inertia", "lag_inertia", "blade_mass")
 _NOT_NEGATIVE = ("flap_hinge_offset", "root_cutout", "flap_first_moment", "lag_first_moment", "pitch_inertia")
 _FRACTIONS = ("flap_outboard_fraction", "lag_outboard_fraction")
+_MAY_LACK = ("cyclic_control_stiffness", "propeller_inertia", "offset_mass")
+_TABLES = ("chord", "twist", "aerodynamic_center")
 _REACH = 1e-3  # of the radius: stations may be printed to three digits
 HELD, NOTHING = "held", "nothing"  # words for the blade beyond the stations of a table
 
@@ -76,6 +79,14 @@ class Rotor:
         Angle from the collective reference to the blade's structural axes, rad.
     propeller_moment : bool
         Whether the propeller moment acts on the blade's pitch.
+    propeller_inertia : float, optional
+        I_xx - I_yy, inertia by the chordwise distances of the mass less that by its distances through the thickness,
+        which makes the propeller moment, kg m². The default is `pitch_inertia`, I_xx + I_yy: a thin blade.
+    offset_mass : OffsetMass, optional
+        Integrals of the mass with its offset from the pitch axis; nothing by default. `from_mass_distribution` finds
+        them from the offset along the blade. The pitch inertia is about the pitch axis and contains ∫ m x².
+    aerodynamic_center : float, (r, values) or function of r
+        Aerodynamic centre, to which lift, drag and moment of the airfoil belong, in m aft of the pitch axis.
     chord, twist : float, (r, values) or function of r
         m and rad. A number is a constant chord, or a linear twist over the radius. A pair of arrays is interpolated
         linearly between its stations, which reach from the root cutout to the tip; with (r, values, "held") the end
@@ -120,6 +131,9 @@ class Rotor:
     gimbal_damping: float = 0.0
     structural_pitch_offset: float = 0.0
     propeller_moment: bool = True
+    propeller_inertia: float | None = None
+    offset_mass: OffsetMass | None = None
+    aerodynamic_center: _Distribution = 0.0
     chord: _Distribution
     twist: _Distribution = 0.0
     airfoil: SectionModel | AirfoilRegions = field(repr=False)
@@ -136,9 +150,9 @@ class Rotor:
 
     def _check_number(self, name: str, value: Any) -> None:
         """Refuse a field that is no finite number; distributions wait until the radius is known to be positive."""
-        if value is None and name == "cyclic_control_stiffness":
+        if name in _MAY_LACK and (value is None or isinstance(value, OffsetMass)):
             return
-        distributed = name in ("chord", "twist") and (isinstance(value, tuple) or callable(value))
+        distributed = name in _TABLES and (isinstance(value, tuple) or callable(value))
         if isinstance(value, tuple) and not distributed:
             raise InputError(name, value, "must be a number in SI units")
         if name != "airfoil" and not distributed:
@@ -154,7 +168,7 @@ class Rotor:
         for name in _FRACTIONS:
             if np.any((np.real(getattr(self, name)) < 0) | (np.real(getattr(self, name)) > 1)):
                 raise InputError(name, getattr(self, name), "must lie between 0 and 1")
-        for name in ("chord", "twist"):
+        for name in _TABLES:
             if isinstance(getattr(self, name), tuple):
                 _check_distribution(name, getattr(self, name))
         chord: Any = self.chord_at(self.quadrature.stations) if callable(self.chord) else self.chord
@@ -175,19 +189,12 @@ class Rotor:
                 raise InputError(name, getattr(self, name), rule)
 
     def _check_reach(self) -> None:
-        """Refuse a chord or twist whose stations do not cover all the airloads, unless its end values hold."""
+        """Refuse a table along the blade whose stations do not cover all the airloads, unless its end values hold."""
         radius, cutout = np.real(self.radius), np.real(self.root_cutout)
-        for name in ("chord", "twist"):
+        for name in _TABLES:
             table = getattr(self, name)
-            if not isinstance(table, tuple) or table[2:] == (HELD,):
-                continue
-            first, last = (np.real(np.asarray(table[0]))[..., end] / radius for end in (0, -1))
-            if np.any(first > cutout / radius + _REACH) or np.any(last < 1 - _REACH):
-                rule = (
-                    f"has stations from {_shown(first)} R to {_shown(last)} R; they must reach from the root cutout, "
-                    f'{_shown(cutout / radius)} R, to the tip, or say beyond = "held" to hold the end values'
-                )
-                raise InputError(name, f"{np.size(table[1])} values", rule)
+            if isinstance(table, tuple):
+                _check_covers(name, table, cutout, radius)
 
     def _check_mass(self) -> None:
         """Refuse mass integrals that no blade can have.
@@ -199,15 +206,56 @@ class Rotor:
         if np.any(i_beta_alpha**2 > np.real(self.blade_inertia * self.flap_inertia) * (1 + 1e-12)):
             rule = f"breaks I_βα² ≤ I_b I_β with I_βα = I_β + e_β S_β = {_shown(i_beta_alpha)} kg m²"
             raise InputError("flap_inertia", self.flap_inertia, rule)
-        if not nowhere_negative(np.real(self.gram_matrix)):
+        if not nowhere_negative(np.real(self._gram_of_line)):
             rule = (
                 "cannot belong to one blade: the Gram matrix of the mass integrals has a negative eigenvalue"
             )
             raise InputError("blade_inertia", self.blade_inertia, rule)
+        self._check_offset_mass()
+
+    def _check_offset_mass(self) -> None:
+        """Refuse a pitch inertia that is less than the mass beside the axis has, and moments that no blade can have."""
+        if self.offset_mass is None:
+            return
+        own, whole = np.real(self.offset_mass.inertia), np.real(self.pitch_inertia)
+        if np.any(whole < own * (1 - 1e-12)):
+            rule = f"must be at least ∫ m x² = {_shown(own)} kg m² of the mass beside the pitch axis"
+            raise InputError("pitch_inertia", self.pitch_inertia, rule)
+        if not nowhere_negative(np.real(self._gram_of_offsets)):
+            rule = (
+                "cannot belong to this blade: the Gram matrix of the mass integrals has a negative eigenvalue"
+            )
+            raise InputError("offset_mass", "∫ m x …", rule)
+
+    @property
+    def _gram_of_offsets(self) -> Array:
+        """Integrals of m times two of 1, r, ρβ, ρζ and, outboard of the lag hinge, x cos τ, x sin τ, (..., 6, 6)."""
+        of: Any = self.offset_mass
+        before, between = self.lag_hinge_offset, self.lag_hinge_offset - np.asarray(self.flap_hinge_offset)
+        moments = (
+            (of.offset_cosine_moment, of.offset_cosine_lag_inertia),
+            (of.offset_sine_moment, of.offset_sine_lag_inertia),
+        )
+        beside = [(first, lag + before * first, lag + between * first, lag) for first, lag in moments]
+        product = of.offset_product_inertia
+        squares = ((of.offset_cosine_inertia, product), (product, of.offset_sine_inertia))
+        own = self._gram_of_line
+        rows = [[own[..., i, j] for j in range(4)] + [column[i] for column in beside] for i in range(4)]
+        rows += [[*column, *square] for column, square in zip(beside, squares, strict=True)]
+        flat = np.broadcast_arrays(*(entry for row in rows for entry in row))
+        return np.stack(flat, axis=-1).reshape(*np.shape(flat[0]), 6, 6)
 
     @property
     def gram_matrix(self) -> Array:
-        """Integrals of m times two of the arms 1, r, ρβ, ρζ, (..., 4, 4) in kg, kg m and kg m²."""
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ, (..., 4, 4) in kg, kg m and kg m².
+
+        With mass beside the pitch axis its offsets x cos τ and x sin τ follow, (..., 6, 6).
+        """
+        return self._gram_of_line if self.offset_mass is None else self._gram_of_offsets
+
+    @property
+    def _gram_of_line(self) -> Array:
+        """Integrals of m times two of the arms 1, r, ρβ, ρζ, (..., 4, 4)."""
         entries = (
             (self.blade_mass, self.blade_first_moment, self.flap_first_moment, self.lag_first_moment),
             (self.blade_first_moment, self.blade_inertia, self.flap_hub_inertia, self.lag_hub_inertia),
@@ -278,14 +326,36 @@ class Rotor:
         """
         regions = self.airfoil if isinstance(self.airfoil, AirfoilRegions) else None
         straight = type(self.airfoil) is Airfoil if regions is None else regions.are_straight
-        return straight and not (callable(self.chord) or callable(self.twist))
+        on_axis = not self.has_aerodynamic_center
+        return straight and on_axis and not (callable(self.chord) or callable(self.twist))
+
+    @property
+    def has_aerodynamic_center(self) -> bool:
+        """Whether the aerodynamic centre is anywhere but on the pitch axis, by what is given."""
+        center = self.aerodynamic_center
+        return isinstance(center, tuple) or callable(center) or bool(np.any(np.asarray(center) != 0))
+
+    @property
+    def is_beside_axis(self) -> bool:
+        """Whether masses or aerodynamic centres lie beside the pitch axis, by what is given."""
+        return self.offset_mass is not None or self.has_aerodynamic_center
+
+    @property
+    def propeller_share(self) -> Any:
+        """Share that makes the propeller moment, of the pitch inertia that no mass beside the axis has."""
+        whole = self.pitch_inertia if self.propeller_inertia is None else self.propeller_inertia
+        own = 0.0 if self.offset_mass is None else self.offset_mass.inertia
+        lumped = np.asarray(self.pitch_inertia - own)
+        share = (whole - own) / np.where(lumped == 0, 1.0, lumped)
+        return float(self.propeller_moment) * (1.0 if self.propeller_inertia is None else share)
 
     @functools.cached_property
     def _panels(self) -> Panels:
         """Panels of all stations."""
         if self.has_effective_sections:
             return long_panels(**self._radii, knots=self._airfoil_edges)
-        knots = [np.asarray(d[0]) for d in (self.chord, self.twist) if isinstance(d, tuple)]
+        tables = (getattr(self, name) for name in _TABLES)
+        knots = [np.asarray(d[0]) for d in tables if isinstance(d, tuple)]
         return short_panels(**self._radii, knots=_joined([*knots, self._airfoil_edges]))
 
     @property
@@ -335,14 +405,15 @@ class Rotor:
         return quadrature, self._effective_on(panels, quadrature)
 
     def _sections_at(self, quadrature: RadialQuadrature) -> EffectiveSections:
-        """Return chord and twist at each station."""
+        """Return chord, twist and aerodynamic centre at each station."""
         r = quadrature.stations
-        return EffectiveSections(self.chord_at(r), self.twist_at(r))
+        return EffectiveSections(self.chord_at(r), self.twist_at(r), center=self.aerodynamic_center_at(r))
 
     def _effective_on(self, panels: Panels, quadrature: RadialQuadrature) -> EffectiveSections:
         """Return the effective chord and twist at the stations of panels."""
         found = effective_sections(self._chord_line, self._twist_line, panels)
-        return found._replace(bent=self.twist_at(quadrature.stations) - found.twist)
+        r = quadrature.stations
+        return found._replace(bent=self.twist_at(r) - found.twist, center=self.aerodynamic_center_at(r))
 
     @property
     def _chord_line(self) -> Line:
@@ -384,6 +455,24 @@ class Rotor:
             return _interpolate(self.chord, r)
         return np.asarray(self.chord)[..., None]
 
+    def aerodynamic_center_at(self, r: Array) -> Array:
+        """Return the place of the aerodynamic centre at radii.
+
+        Parameters
+        ----------
+        r : array (..., stations)
+            Radii from the centre of rotation, m.
+
+        Returns
+        -------
+        array (..., stations)
+            m aft of the pitch axis; a constant place has one station.
+        """
+        center = self.aerodynamic_center
+        if isinstance(center, tuple) or callable(center):
+            return np.asarray(_interpolate(center, r))
+        return np.asarray(center, dtype=np.result_type(float, np.asarray(center)))[..., None]
+
     def twist_at(self, r: Array) -> Array:
         """Return the twist at radii.
 
@@ -410,6 +499,7 @@ class Rotor:
         beyond: str = "",
         *,
         hub_mass: ArrayLike | None = None,
+        mass_offset: _Distribution | None = None,
         **fields_: Any,
     ) -> Rotor:
         """Return a rotor whose seven mass integrals come from mass per length, linear between stations.
@@ -430,6 +520,8 @@ class Rotor:
             "nothing" says that there is no mass inboard of the first station and outboard of the last.
         hub_mass : float or array, optional
             Mass of the whole rotor's hub at the centre of rotation, kg, for stations that begin further out; may be 0.
+        mass_offset : float, (r, values) or function of r, optional
+            Centre of the mass aft of the pitch axis, m, as `chord`; it counts outboard of the lag hinge.
         **fields_
             The other fields of `Rotor`.
 
@@ -457,7 +549,32 @@ class Rotor:
             for power, kind in ((1, "first_moment"), (2, "inertia")):
                 integrals[f"{name}_{kind}"] = _outboard_moment(r, mass, axis, power)
         rotor = cls(**integrals, **fields_)
+        if mass_offset is not None:
+            rotor = rotor._with_mass_beside_axis((r, mass), mass_offset)
         return rotor if hub_mass is None else rotor._with_hub(hub_mass)
+
+    def _with_mass_beside_axis(self, mass: _Table, offset: _Distribution) -> Rotor:
+        """Return the rotor with a mass distribution whose centre lies beside the pitch axis."""
+        tables = [table for table in (offset, self.twist) if isinstance(table, tuple)]
+        if isinstance(offset, tuple):
+            _check_distribution("mass_offset", offset)
+            _check_covers("mass_offset", offset, np.real(self.lag_hinge_offset), np.real(self.radius))
+        elif not callable(offset):
+            check_finite("mass_offset", offset)
+
+        def offset_at(r: Array) -> Array:
+            if isinstance(offset, tuple) or callable(offset):
+                return _interpolate(offset, r)
+            return np.asarray(np.asarray(offset)[..., None] + 0 * r)
+
+        first, last = (np.asarray(mass[0])[..., end : end + 1 or None] for end in (0, -1))
+        knots = _joined([np.asarray(table[0]) for table in (mass, *tables)])
+        knots = np.where(np.real(knots) < np.real(first), first, knots)
+        knots = np.where(np.real(knots) > np.real(last), last, knots)
+        found = OffsetMass.along(
+            knots, self.lag_hinge_offset, lambda r: _interpolate(mass, r), offset_at, self.twist_at
+        )
+        return replace(self, offset_mass=found)
 
     def _with_hub(self, hub_mass: ArrayLike) -> Rotor:
         """Return the rotor with a mass at its centre, of which every blade has a share."""
@@ -519,6 +636,20 @@ def _check_distribution(name: str, distribution: _Table) -> None:
         raise InputError(name, values.tolist(), "must be finite")
     if np.any(np.diff(r) <= 0):
         raise InputError(name, r.tolist(), "must have stations that increase from root to tip")
+
+
+def _check_covers(name: str, table: _Table, start: Any, radius: Any) -> None:
+    """Refuse a table whose stations do not reach from a radius to the tip, unless its end values hold."""
+    if table[2:] == (HELD,):
+        return
+    first, last = (np.real(np.asarray(table[0]))[..., end] / radius for end in (0, -1))
+    if np.any(first > start / radius + _REACH) or np.any(last < 1 - _REACH):
+        where = "lag hinge" if name == "mass_offset" else "root cutout"
+        rule = (
+            f"has stations from {_shown(first)} R to {_shown(last)} R; they must reach from the {where}, "
+            f'{_shown(start / radius)} R, to the tip, or say beyond = "held" to hold the end values'
+        )
+        raise InputError(name, f"{np.size(table[1])} values", rule)
 
 
 def _joined(parts: list[Array]) -> Array:

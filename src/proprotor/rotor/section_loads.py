@@ -79,6 +79,11 @@ class BladeSections:
         """Whether powers of the chord have effective values of their own."""
         return bool(self.along.square.shape[-1] > 1)
 
+    @functools.cached_property
+    def beside_axis(self) -> bool:
+        """Whether the aerodynamic centre lies beside the pitch axis anywhere."""
+        return bool(np.any(self.along.center))
+
     @property
     def sides(self) -> dict[str, Array]:
         """On which side of the hinges each segment is, by the names of the derivation."""
@@ -128,10 +133,17 @@ def _air(
     stations = {name: segments[name] for name in ("density", "speed_of_sound", "section_damping")}
     for name, (at_axis, per_radius) in _VELOCITIES.items():
         stations[name] = along_lines(line[..., at_axis], line[..., per_radius])
-    stations["section_spin"] = along_lines(line[..., airloads.SPIN]) if spins else 0.0
+    beside = sections.beside_axis
+    stations["section_spin"] = along_lines(line[..., airloads.SPIN]) if spins or beside else 0.0
     stations |= {"chord": sections.along.chord, "section_pitch": segments["pitch"] + sections.along.twist}
     if sections.tapers:  # the lift of the turn has the chord squared
         stations["section_damping"] = segments["section_damping"] * sections.along.square
+    if beside:
+        stations["aerodynamic_center"] = sections.along.center
+        return {
+            **stations,
+            **_in_front_and_behind(stations, evaluate(section.air_beside_axis, stations)._asdict()),
+        }
     return {
         **stations,
         **_in_front_and_behind(stations, evaluate(section.air_at_section, stations)._asdict()),
@@ -274,7 +286,15 @@ def _loads(
             given |= {name: value * sections.along.square for name, value in pitching.items() if _any(value)}
             given["section_damping"] = given["section_damping"] / sections.along.square * sections.along.cube
         loads |= evaluate(section.pitching_moment, given)._asdict()
-    return loads
+    return _about_axis(loads, air) if sections.beside_axis else loads
+
+
+def _about_axis(loads: _Quantities, air: _Quantities) -> dict[str, Any]:
+    """Return loads and derivatives about the pitch axis from those of the aerodynamic centre."""
+    at_center = {f"{name}_at_center": load for name, load in loads.items()}
+    none = {name: 0.0 for name in keywords(section.about_axis) if name.endswith("_at_center")}
+    found: dict[str, Any] = evaluate(section.about_axis, {**none, **air, **at_center})._asdict()
+    return found
 
 
 def mark_doubts(
@@ -308,6 +328,8 @@ def mark_doubts(
 def has_closed_form(sections: BladeSections) -> bool:
     """Return whether the lift-slope airloads of the published set can be computed without quadrature."""
     airfoil = sections.airfoil
+    if sections.beside_axis:
+        return False
     alike = isinstance(airfoil, Airfoil) and np.shape(airfoil.lift_slope)[-1:] in ((), (1,))
     return alike and sections.along.chord.shape[-1] == 1
 

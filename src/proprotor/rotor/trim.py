@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from proprotor_equations import flap_lag_springs
+from proprotor_equations import flap_lag_springs, offset_mass
 from proprotor_equations import trim as equations
 
 from proprotor.rotor.blade_frequencies import BladeFrequencies
@@ -130,12 +130,19 @@ def blade_pitch(quantities: Mapping[str, Any], state: Mapping[str, Any]) -> Any:
     return state["collective"] + state["elastic_pitch"] - by_flap - by_lag
 
 
+def has_offset_mass(quantities: Mapping[str, Any]) -> bool:
+    """Return whether these are the quantities of a blade with mass beside its pitch axis."""
+    return "offset_cosine_moment" in quantities
+
+
 def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[str, Any]) -> dict[str, Any]:
     """Return all quantities of the whole blade at a trim state: pitch, trim integrals and springs are added."""
     found = dict(quantities) | dict(state)
     found["pitch"] = blade_pitch(quantities, state)
     found["structural_pitch"] = found["pitch"] + quantities["structural_pitch_offset"]
     found |= trim_integrals(found)
+    if has_offset_mass(found):
+        found |= evaluate(offset_mass.trim_integrals, found)._asdict()
     return found | springs(options, found)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -19,9 +19,10 @@ from proprotor.rotor.elimination import solve
 from proprotor.rotor.fused import plans_of
 from proprotor.rotor.fused_balance import Room, balanced, segments_of, serves_sections
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections, load_moments, segment_quantities
-from proprotor.rotor.trim import UNKNOWNS, Target, take, with_trim
+from proprotor.rotor.trim import UNKNOWNS, Target, has_offset_mass, take, with_trim
 from proprotor.typing import Array
 
 LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
@@ -61,10 +62,15 @@ class Slopes(NamedTuple):
     def by_moments(self, sprung: Array) -> Slopes:
         """Return the slopes per unit of the moments that springs and centrifugal force set against flap and lag.
 
-        Counted in this way, a spring of any stiffness that turns with the pitch changes no slope.
+        Counted in this way, a spring of any stiffness that turns with the pitch changes no slope. The other angles
+        are counted as moments too, of the stiffest of these springs, so that units do not matter.
         """
-        structure = np.where(sprung[:, None], self.full - self.airloads, np.eye(len(sprung)))
-        angles = solve(structure, np.broadcast_to(np.eye(len(sprung)), structure.shape))
+        springs, places = self.full - self.airloads, np.flatnonzero(sprung)
+        stiffest = np.abs(springs[:, places]).max(axis=(1, 2), initial=0.0)
+        own = np.where(stiffest > 0, stiffest, 1.0)[:, None, None] * np.eye(len(sprung))
+        angles = solve(
+            np.where(sprung[:, None], springs, own), np.broadcast_to(np.eye(len(sprung)), springs.shape)
+        )
         return Slopes(self.full @ angles, self.airloads @ angles)
 
     def of(self, rows: Array | slice) -> Slopes:
@@ -158,7 +164,7 @@ class Balance:
         else:
             segments = self._loads(quantities, rows, doubts=doubts)
             work = self._work(segments)
-            residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
+            residual = _residual(quantities) - work
             structure, of_airloads = self._slopes(state, rows, quantities, segments)
             along = functools.partial(dict, segments)
         blade = self._square(of_airloads)
@@ -172,7 +178,7 @@ class Balance:
         """Return the residual (n, k) with all of the airloads, without slopes."""
         quantities = self._at(state, rows, share)
         work = self._work(self._loads(quantities, rows, steady_only=True))
-        residual = evaluate(equations.residual, quantities)[..., equations.TRIM] - work
+        residual = _residual(quantities) - work
         return self._to_target(residual, rows)[:, self.rows]
 
     def relieved(self, here: Linear, share: Array) -> Array:
@@ -181,11 +187,18 @@ class Balance:
         return np.asarray(here.residual + (1 - share[:, None]) * work)
 
     def precone_load(self, rows: Array) -> Array:
-        """Return the part of precone in the residual (n, k) of the undeflected blade."""
+        """Return the part of precone and of mass beside the axis in the residual (n, k) of the undeflected blade."""
         load = np.zeros((len(rows), len(self.free)))
         places = np.array(self.free)[self.hinged]
-        precone = evaluate(equations.precone_load, take(self.quantities, rows))
+        given = take(self.quantities, rows)
+        precone = evaluate(equations.precone_load, given)
         load[:, self.hinged] = precone[..., places, equations.TRIM]
+        if has_offset_mass(given):
+            flat = dict.fromkeys((*UNKNOWNS, "precone"), 0.0) | {
+                "collective": self.air_direction(self.points)[rows]
+            }
+            beside = evaluate(equations.offset_residual, with_trim(given | flat, self.options, flat))
+            load[:, self.hinged] += np.real(beside[..., places, equations.TRIM])
         return load
 
     def take_step(self, state: State, rows: Array, step: Array) -> None:
@@ -204,6 +217,7 @@ class Balance:
         given = dict(self.quantities) if self._is_all(rows) else take(self.quantities, rows)
         if share is not None:
             given["precone"] = share * given["precone"]
+            given |= _at_share(given, share)
         return with_trim(given, self.options, take(state, rows))
 
     def _sections(self, rows: Array) -> BladeSections:
@@ -247,6 +261,8 @@ class Balance:
         motion["load_derivatives"] = evaluate(airloads.load_derivatives, segments)
         of_airloads = evaluate(airloads.stiffness, motion)
         structure = evaluate(equations.jacobian, quantities)
+        if has_offset_mass(quantities):
+            structure = structure + evaluate(equations.offset_jacobian, quantities)
         if self.options.frequencies is not None and equations.COLLECTIVE in self.free:
             structure = np.broadcast_to(structure, of_airloads.shape).copy()
             structure[..., equations.COLLECTIVE] = self._with_collective(state, rows)
@@ -261,7 +277,26 @@ class Balance:
         real["collective"] = real["collective"] + 1j * _COMPLEX_STEP
         given = {name: np.real(value) for name, value in take(self.quantities, rows).items()}
         quantities = with_trim(given, self.options, take(real, rows))
-        return np.asarray(evaluate(equations.residual, quantities)[..., equations.TRIM].imag / _COMPLEX_STEP)
+        return np.asarray(_residual(quantities).imag / _COMPLEX_STEP)
+
+
+def _at_share(quantities: Mapping[str, Any], share: Any) -> dict[str, Any]:
+    """Return the integrals of mass beside the pitch axis at a share of the offset; nothing for a blade without any."""
+    if not has_offset_mass(quantities):
+        return {}
+    squares = ("offset_cosine_inertia", "offset_product_inertia", "offset_sine_inertia")
+    return {
+        entry.name: quantities[entry.name] * (share**2 if entry.name in squares else share)
+        for entry in fields(OffsetMass)
+    }
+
+
+def _residual(quantities: Mapping[str, Any]) -> Array:
+    """Return the balance (n, 5) without airloads."""
+    residual = evaluate(equations.residual, quantities)[..., equations.TRIM]
+    if has_offset_mass(quantities):
+        residual = residual + evaluate(equations.offset_residual, quantities)[..., equations.TRIM]
+    return np.asarray(residual)
 
 
 def newton_step(slopes: Array, residual: Array) -> Array:

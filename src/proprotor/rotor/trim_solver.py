@@ -20,7 +20,7 @@ import numpy as np
 
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections
-from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim
+from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim, has_offset_mass
 from proprotor.rotor.trim_balance import Balance, Linear, Slopes, State, copy_state, is_last, newton_step
 from proprotor.rotor.trim_bound import at_end, near_each_other
 from proprotor.rotor.trim_of_one import Found, trim_of_one
@@ -121,7 +121,7 @@ def solve_trim(
     with np.errstate(all="ignore"):
         if sections.is_complex or any(map(_is_complex, numbers)):
             return _complex_trim(balance, few, points)
-        if one and free and balance.fused and few is sections:
+        if one and free and balance.fused and few is sections and not has_offset_mass(quantities):
             found = trim_of_one(balance)
             if found is not None:
                 return _settled(balance, found)

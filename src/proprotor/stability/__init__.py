@@ -11,7 +11,12 @@ Modes of one point, or of a batch of points
     root_error              roots as exact as the matrices allow, and their error: what "neutral" means
     mode_names              what moves in a mode, and how it whirls
     named_modes             modes of a case at one airspeed, by name
+    transfer                transfer of inputs to outputs at a frequency; their names and units
     frequency_response      response of loads and motions to gusts and swashplate
+    loop_transfer           the transfer function of a control loop, cut at its actuator
+    margin_search           gain, phase, delay and disk margin of a transfer function
+    margins                 margins of the control loops of a case along airspeeds
+    margin_ranges           the airspeeds over which loops keep the margins that are needed
 
 Modes along a line of points
     parameter_lines         lines of airspeeds or of another input, and the approach from the anchor
@@ -34,11 +39,16 @@ Boundaries: where damping passes a level
     in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
     map, boundary_lines     the plane of two inputs; its boundary by mode
+    boundary_search         boundaries along many lines of airspeeds at once, a line for each design
     boundary_against        boundaries against one input, such as altitude or rotor speed
+    envelope_speeds         V_D and M_D at altitude, and the speeds up to which there must be no flutter
+    envelope_dataset        the dataset of an envelope, its limits and its worst case
+    envelope                onsets and damping of all conditions of a deck against these speeds
 
 What a mode comes from and depends on
     eigenvalue_derivatives  change of eigenvalues with the matrices
     sensitivity             derivatives of eigenvalues, damping and flutter speed by inputs
+    growth_constraint       one number for optimisers, at or below zero where all roots are damped enough
     origins, attribution    matrices by physical origin; what drives and damps a mode
 """
 
@@ -52,12 +62,17 @@ from proprotor.stability.brackets import Brackets, Crossing
 from proprotor.stability.branches import BranchLabels, NamedStates, branch_labels, by_branch, named_at
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
+from proprotor.stability.envelope import envelope
+from proprotor.stability.envelope_dataset import MET, NOT_KNOWN, NOT_MET
 from proprotor.stability.floquet import floquet
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
+from proprotor.stability.growth_constraint import SHARPNESS, growth_constraint
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
 from proprotor.stability.map import stability_map
+from proprotor.stability.margin_ranges import Kept, Needed, decibels, kept_ranges
+from proprotor.stability.margins import margins
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
 from proprotor.stability.mode_names import DOUBTFUL, moving
 from proprotor.stability.modes import (
@@ -68,18 +83,33 @@ from proprotor.stability.modes import (
     few_spectra,
     modes,
 )
+from proprotor.stability.named_modes import named_modes
 from proprotor.stability.names_and_steps import Steps, Walk, joined, names_and_steps
 from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
-from proprotor.stability.sensitivity import at_boundary, damping_rate, sensitivity
+from proprotor.stability.sensitivity import at_boundary, damping_rate, eigenvalue_rates, sensitivity
 from proprotor.stability.sweep import mode_columns, sweep, sweep_case
+from proprotor.stability.transfer import (
+    System,
+    decays_everywhere,
+    frequencies_in_si,
+    places_of,
+    system_at,
+    transfer,
+    unit_of_input,
+    unit_of_output,
+)
 
 __all__ = [
     "ANCHORS",
     "DOUBTFUL",
     "FLUTTER",
+    "MET",
+    "NOT_KNOWN",
+    "NOT_MET",
     "NOT_TOLD",
+    "SHARPNESS",
     "Boundary",
     "BoundaryLine",
     "Brackets",
@@ -89,12 +119,15 @@ __all__ = [
     "Crossings",
     "Failed",
     "FlutterPoint",
+    "Kept",
     "Modes",
     "NamedStates",
+    "Needed",
     "ParameterLine",
     "Search",
     "Spectrum",
     "Steps",
+    "System",
     "Walk",
     "at_boundary",
     "at_columns",
@@ -108,9 +141,13 @@ __all__ = [
     "coordinate_motion",
     "coordinate_shares",
     "damping_rate",
+    "decays_everywhere",
+    "decibels",
     "decomposition",
     "eigenvalue_change",
+    "eigenvalue_rates",
     "eigenvalues",
+    "envelope",
     "error_near_zero",
     "few_spectra",
     "find_crossings",
@@ -119,21 +156,31 @@ __all__ = [
     "flutter_messages",
     "flutter_point",
     "follow",
+    "frequencies_in_si",
     "frequency_response",
+    "growth_constraint",
     "instability",
     "joined",
+    "kept_ranges",
     "kinds",
+    "margins",
     "match_modes",
     "mode_columns",
     "modes",
     "moving",
     "named_at",
+    "named_modes",
     "names_and_steps",
+    "places_of",
     "scan_speeds",
     "sensitivity",
     "stability_map",
     "sweep",
     "sweep_case",
+    "system_at",
     "tip_speed",
+    "transfer",
+    "unit_of_input",
+    "unit_of_output",
     "with_changes",
 ]

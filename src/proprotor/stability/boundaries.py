@@ -336,7 +336,7 @@ def _lost(search: Search, brackets: Brackets) -> tuple[Failed, ...]:
     for k, why in brackets.lost.items():
         low, high = np.sort(brackets.x[:, k]).tolist()
         found.append(Failed(low, high, f"{rule}: {why}"))
-    found += [Failed(low, high, f"{rule}: {JUMPS}") for low, high in search.unsettled]
+    found += [Failed(low, high, f"{rule}: {JUMPS}") for _, low, high in search.unsettled]
     joined: list[Failed] = []
     for one in sorted(found):
         if joined and one.first <= joined[-1].last + _TOGETHER * abs(one.first):

@@ -71,8 +71,8 @@ class Search:
     ) -> None:
         self.level, self.names, self.onset_only = level, names, onset_only
         self._models, self._forgiving, self._states = models, forgiving, states
-        # Both ends of steps of lines on which nothing settles, as where the trim jumps back and forth.
-        self.unsettled: list[list[float]] = []
+        # Line and both ends of steps of lines on which nothing settles, as where the trim jumps back and forth.
+        self.unsettled: list[tuple[int, float, float]] = []
         self._ahead = PointsAhead(self.solve)
         self.scanned = self.solve(line, position, plain=onset_only)
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
@@ -143,7 +143,7 @@ class Search:
             line = self.points.line[self.steps.before[wanted]]
             left = np.isfinite(share) & (self.solves[line] > _MOST_SOLVES)
             ends = self.points.position[np.stack([self.steps.before, self.steps.after], axis=1)]
-            self.unsettled += ends[wanted[left]].tolist()
+            self.unsettled += zip(line[left].tolist(), *ends[wanted[left]].T.tolist(), strict=True)
             chosen = np.isfinite(share) & ~left
             if not chosen.any() or not self._part(wanted[chosen], share[chosen]):
                 break

@@ -16,6 +16,7 @@ from proprotor_equations import BLADE_COORDINATES, FIXED_COORDINATES, drive_trai
 from proprotor_equations import rotor as whole_rotor
 
 from proprotor.errors import InputError
+from proprotor.model.closed_loop import taken_apart
 from proprotor.model.configuration import Configuration
 from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import INPUTS, LinearModel
@@ -118,6 +119,27 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
         name = "load_factor" if np.all(np.equal(choice.shaft_angle, 0)) else "shaft_angle"
         rule = "is not taken apart: the airloads of a periodic trim have no parts of their own"
         raise InputError(name, getattr(choice, name), rule)
+    if not case.loops:
+        return _open_parts(case, model, choice)
+    dofs, loops = taken_apart(model, case.loops)
+    places = [model.dofs.index(name) for name in dofs]
+    opened = {
+        name: _wide(part, places, model)
+        for name, part in _open_parts(case, model.submodel(dofs), choice).items()
+    }
+    return opened | {"control loops": _Part(*loops)}
+
+
+def _wide(part: _Part, places: list[int], model: LinearModel) -> _Part:
+    """Return a part on some coordinates of a model as a part on all of them."""
+    found = [np.zeros(model.M.shape) for _ in part]
+    for whole, matrix in zip(found, part, strict=True):
+        whole[..., np.array(places)[:, None], places] = matrix
+    return _Part(*found)
+
+
+def _open_parts(case: Configuration, model: LinearModel, choice: Options) -> dict[str, _Part]:
+    """Return the parts of a model without control loops."""
     lift = None
     if choice.wing_lags:
         lift = case.support.wing_circulation(model.airspeed, case.operation.density)

@@ -48,23 +48,23 @@ def _input_rates(
     model: LinearModel,
     modes: Modes,
 ) -> Array:
-    """Return derivatives of eigenvalues by many inputs (inputs, modes), from one batch of models.
+    """Return derivatives of eigenvalues by many inputs (inputs, ..., modes), from one batch of models.
 
     Parameters
     ----------
     linearize : callable
-        Models for arrays (inputs,) of the inputs by name, analytic in them.
+        Models for arrays (inputs, ...) of the inputs by name, analytic in them.
     values : mapping of str to float
         Values of the inputs at which the derivatives are wanted.
     model : LinearModel
-        The model at these values; one point.
+        The model at these values; one point, or one for each airspeed (...,).
     modes : Modes
         Modes of the model.
     """
     count = len(values)
+    number = np.arange(count).reshape(-1, *[1] * (modes.values.ndim - 1))
     moved = {
-        name: value + 1j * STEP * (np.arange(count) == place)
-        for place, (name, value) in enumerate(values.items())
+        name: value + 1j * STEP * (number == place) for place, (name, value) in enumerate(values.items())
     }
     return eigenvalue_change(model, matrix_derivatives(linearize(moved)), modes)
 
@@ -124,7 +124,7 @@ def sensitivity(
     """
     if of not in _QUANTITIES:
         raise InputError("of", of, f"must be one of {', '.join(_QUANTITIES)}")
-    inputs = _chosen(case, wrt)
+    inputs = chosen_inputs(case, wrt)
     if of == "flutter_speed":
         return _of_flutter_speed(case, inputs, airspeed, mode, level, options)
     if airspeed is None:
@@ -132,22 +132,51 @@ def sensitivity(
     return _of_modes(case, of, inputs, airspeed, mode, options)
 
 
-def _chosen(case: Configuration, wrt: Sequence[str] | None) -> dict[str, Datum]:
+def chosen_inputs(case: Configuration, wrt: Sequence[str] | None) -> dict[str, Datum]:
+    """Return the inputs of a case at some paths, in their order; all inputs if no paths are given.
+
+    Raises
+    ------
+    InputError
+        For an unknown path, or a case that was not made from a deck.
+    """
+    if wrt is not None and not len(wrt):
+        return {}
     known = design_inputs(case)
     for path in wrt or ():
         check_known("wrt", path, known, "input")
     return known if wrt is None else {path: known[path] for path in wrt}
 
 
-def _rates(
+def eigenvalue_rates(
     case: Configuration,
     inputs: Mapping[str, Datum],
-    airspeed: float,
+    airspeed: float | Array,
     modes: Modes,
     model: LinearModel,
     options: Any,
 ) -> tuple[Array, Array]:
-    """Return derivatives of eigenvalues (inputs, modes), and which inputs (inputs,) took a complex step."""
+    """Return derivatives of eigenvalues (inputs, ..., modes), and which inputs (inputs,) took a complex step.
+
+    Parameters
+    ----------
+    case : Case
+    inputs : mapping of str to Datum
+        By path.
+    airspeed : float or array (...)
+        m/s.
+    modes : Modes
+        Of the model (..., modes).
+    model : LinearModel
+        The case at the airspeed (...).
+    options : mapping
+        See `proprotor.rotor.options.Options`.
+
+    Raises
+    ------
+    InputError
+        For an unknown option, or a number that is not physical.
+    """
 
     def linearize(values: Mapping[str, Array]) -> LinearModel:
         return vary_case(case, values).linearize(airspeed, **options)
@@ -163,7 +192,7 @@ def _rates(
         exact = np.array([_takes_complex(case, path, value) for path, value in values.items()])
         if exact.all():  # something else is wrong
             raise
-    rates = np.empty((len(values), len(modes.values)), dtype=complex)
+    rates = np.empty((len(values), *modes.values.shape), dtype=complex)
     if exact.any():
         rates[exact] = _input_rates(linearize, dict(compress(values.items(), exact)), model, modes)
     for place in np.flatnonzero(~exact):
@@ -212,7 +241,7 @@ def at_boundary(
     model = case.linearize(speed, **options)
     spectrum = decomposition(model)
     modes = spectrum.modes(spectrum.nearest(np.array([boundary.eigenvalue])))
-    rates, exact = _rates(case, inputs, speed, modes, model, options)
+    rates, exact = eigenvalue_rates(case, inputs, speed, modes, model, options)
     rates = rates[:, 0]
     moves = -growth_rate(modes.values, rates, level) / boundary.rate
     frequency = rates.imag + boundary.eigenvalue_rate.imag * moves
@@ -239,7 +268,7 @@ def _of_modes(
     options: Mapping[str, Any],
 ) -> Dataset:
     names, modes, model, speed = named_modes(case, airspeed, mode, options)
-    rates, exact = _rates(case, inputs, speed, modes, model, options)
+    rates, exact = eigenvalue_rates(case, inputs, speed, modes, model, options)
     value, units = modes.values, "rad/s"
     if of == "damping":
         root = refined(model, modes)

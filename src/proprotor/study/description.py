@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from proprotor.datum import Datum, deck_unit
-from proprotor.deck.vary import varied_numbers
+from proprotor.deck.vary import added_loops, varied_numbers
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.options_in_force import plain
@@ -70,7 +70,7 @@ def described(
 
 def _origin(case: Configuration) -> tuple[str, dict[str, Any]]:
     """Return the name or path of the deck of a case, and what was set or varied in it, as tables of a description."""
-    if case.deck is None:
+    if case.deck is None or added_loops(case):
         return "", {}
     name, settings = case.deck.origin
     tables = {"set": settings, "vary": {path: plain(si) for path, si in varied_numbers(case).items()}}

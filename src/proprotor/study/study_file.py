@@ -97,7 +97,8 @@ def read_study(path: str | os.PathLike[str]) -> _Description:
             check_known(name, entry, _TABLES[name], "entry")
     for table, entry in (("study", "case"), *(("outputs", name) for name in tables.get("outputs", ()))):
         given = tables.get(table, {}).get(entry)
-        if isinstance(given, str) and (entry != "case" or given not in list_cases()):
+        known = entry == "case" and given in ("", *list_cases())  # a case without a deck has no name
+        if isinstance(given, str) and not known:
             tables[table][entry] = os.path.normpath(Path(path).parent / given)
     return tables
 

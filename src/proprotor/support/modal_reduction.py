@@ -119,7 +119,7 @@ def on_modes(
         found = StructuralModes(*(_taken(part, places) for part in found))
         shapes, structural = found.shapes, _modal_damping(found, _taken(ratio, places), stiffness)
     parts = {"mass": mass, "stiffness": stiffness, "damping": damping}
-    reduced = {
+    reduced: dict[str, Any] = {
         name: symmetric(np.swapaxes(shapes, -1, -2) @ (part @ shapes))
         for name, part in parts.items()
         if part is not None

@@ -50,6 +50,10 @@ class NormalModes:
         of two designs belong together.
     warning : array of str, shape (...), optional
         Why a design is doubtful, a text for each of many designs.
+    inputs : tuple of str
+        Names of inputs that load the support, such as "flaperon", in rad.
+    loads : array (..., n, inputs), optional
+        Generalised forces per unit of each input, N or N m per rad.
 
     Raises
     ------
@@ -67,6 +71,8 @@ class NormalModes:
     shaft: str = "held"
     shapes: Array | None = None
     warning: Array | None = None
+    inputs: tuple[str, ...] = ()
+    loads: Array | None = None
 
     symmetric: ClassVar[tuple[str, ...]] = ("mass", "damping", "stiffness")
     wing: ClassVar[WingLift | None] = None

@@ -8,12 +8,20 @@ quarters of the chord for a thin airfoil, and the lift acts at the aerodynamic c
 with x up, α the nose-up rotation about J, Λ the sweep, and a the lift slope of sections across the elastic axis.
 Left out are steady lift, drag, induced velocity and apparent mass. The lift may lag: see
 `proprotor.support.wing_circulation`.
+
+A flaperon of E chords that turns by δ, trailing edge down, adds by thin-airfoil theory (Glauert, The Elements of
+Aerofoil and Airscrew Theory) at the aerodynamic centre
+
+    dL = ½ ρ V² cos Λ  a c τ δ dy        dM = ½ ρ V² cos Λ  c² c_mδ δ dy
+    τ = (π - θ + sin θ)/π                c_mδ = -½ sin θ (1 - cos θ),    cos θ = 2 E - 1
+
+Its rate and its inertia are left out, and its loads come at once where other lift lags.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +34,7 @@ from proprotor.support.wing_circulation import WingLift, span_functions
 from proprotor.typing import Array
 
 _UP, _OUTBOARD, _PITCH = (HUB_AXES.index(axis) for axis in ("x", "y", "alpha_y"))
+FLAPERON = "flaperon"  # the input, rad, trailing edge down
 _STRIPS = 64
 _PER_ELEMENT = 4  # Gauss points; products of two cubics are integrated exactly
 
@@ -55,11 +64,15 @@ class WingAerodynamics:
         Sweep Λ, rad.
     elastic_axis, aerodynamic_centre, downwash_point : float
         Positions in chords behind the leading edge.
+    flap_chord : float, optional
+        Chord of the flaperon over the chord of the wing, 0 to 1; without one there is no flaperon.
+    flap_inboard, flap_outboard : float
+        Ends of the flaperon in parts of the span, 0 to 1.
 
     Raises
     ------
     InputError
-        When a value is not finite, or lift slope or chord is not above zero.
+        When a value is not finite, lift slope or chord is not above zero, or the flaperon does not lie on the wing.
     """
 
     lift_slope: float
@@ -68,11 +81,28 @@ class WingAerodynamics:
     sweep: float = 0.0
     aerodynamic_centre: float = 0.25
     downwash_point: float = 0.75
+    flap_chord: float | None = None
+    flap_inboard: float = 0.0
+    flap_outboard: float = 1.0
 
     def __post_init__(self) -> None:
         for entry in fields(self):
             sign = "above zero" if entry.name in ("lift_slope", "chord") else ""
-            check_finite(entry.name, getattr(self, entry.name), sign)
+            if entry.name != "flap_chord" or self.flap_chord is not None:
+                check_finite(entry.name, getattr(self, entry.name), sign)
+        if self.flap_chord is not None and np.any(
+            (np.real(self.flap_chord) <= 0) | (np.real(self.flap_chord) > 1)
+        ):
+            raise InputError("flap_chord", self.flap_chord, "must be above 0, and at most the whole chord, 1")
+        for name, low, high in (
+            ("flap_inboard", 0.0, self.flap_outboard),
+            ("flap_outboard", self.flap_inboard, 1.0),
+        ):
+            if np.any(
+                (np.real(getattr(self, name)) < np.real(low)) | (np.real(getattr(self, name)) > np.real(high))
+            ):
+                rule = "must lie on the wing, 0 to 1 of its span, inboard before outboard"
+                raise InputError(name, getattr(self, name), rule)
 
     def matrices(self, strips: Strips) -> tuple[Array, Array]:
         """Return the parts of the airloads in C per ρV and in K per ρV²; both (..., n, n)."""
@@ -113,6 +143,42 @@ class WingAerodynamics:
         found: Array = strips.rise + (ahead * chord)[..., None, None] * strips.pitch
         return found
 
+    def flap_loads(self, strips: Strips) -> Array:
+        """Return the generalised forces of the flaperon per rad and per ρV², (..., n, 1)."""
+        assert self.flap_chord is not None  # checked by the caller
+        own = self._arrays()
+        effectiveness, moment = flap_derivatives(np.asarray(self.flap_chord)[..., None, None])
+        area = (
+            strips.width[..., None] * _covered(strips.width, self.flap_inboard, self.flap_outboard)[..., None]
+        )
+        pressure = own["chord"] * np.cos(own["sweep"]) / 2 * area
+        arm = (own["elastic_axis"] - own["aerodynamic_centre"]) * own["chord"]
+        lift = pressure * own["lift_slope"] * effectiveness
+        loads = lift * (strips.rise + arm * strips.pitch) + pressure * own["chord"] * moment * strips.pitch
+        return np.asarray(loads.sum(axis=-2)[..., None])
+
+    def _arrays(self) -> dict[str, Array]:
+        """Return the numbers as arrays (..., 1, 1) by name, without those of the flaperon."""
+        names = (entry.name for entry in fields(self) if not entry.name.startswith("flap"))
+        return {name: np.asarray(getattr(self, name))[..., None, None] for name in names}
+
+
+def flap_derivatives(chord: Array) -> tuple[Array, Array]:
+    """Return the effectiveness τ and the moment about the quarter chord, 1/rad, of flaps of a share of the chord."""
+    theta = np.arccos(2 * np.asarray(chord) - 1 + 0j if np.iscomplexobj(chord) else 2 * np.asarray(chord) - 1)
+    return (np.pi - theta + np.sin(theta)) / np.pi, -np.sin(theta) * (1 - np.cos(theta)) / 2
+
+
+def _covered(width: Array, inboard: ArrayLike, outboard: ArrayLike) -> Array:
+    """Return the share of each strip (..., k) that lies between two places, in parts of the span."""
+    ends = np.cumsum(width, axis=-1)
+    span = ends[..., -1:]
+    first, last = (np.asarray(place)[..., None] * span for place in (inboard, outboard))
+    start = ends - width
+    low = np.where(np.real(first) > np.real(start), first, start)
+    high = np.where(np.real(last) < np.real(ends), last, ends)
+    return np.asarray(np.where(np.real(high) > np.real(low), high - low, 0.0) / width)
+
 
 @dataclass(frozen=True, eq=False)
 class _LoadedModes(NormalModes):
@@ -129,12 +195,15 @@ class WingInAirstream(NormalModes):
     ----------
     airload_damping, airload_stiffness : array (..., n, n)
         Parts of the airloads in C per ρV and in K per ρV², from `WingAerodynamics.matrices`.
+    airload_inputs : array (..., n, inputs), optional
+        Generalised forces per unit of each input and per ρV², from `WingAerodynamics.flap_loads`.
     wing : WingLift, optional
         The part of the airloads that is lift, which may lag.
     """
 
     airload_damping: ArrayLike = field(kw_only=True)
     airload_stiffness: ArrayLike = field(kw_only=True)
+    airload_inputs: ArrayLike | None = field(kw_only=True, default=None)
     wing: WingLift | None = field(kw_only=True, default=None)  # type: ignore[misc]
 
     def at(self, airspeed: ArrayLike, density: ArrayLike) -> NormalModes:
@@ -142,7 +211,8 @@ class WingInAirstream(NormalModes):
         speed, density = np.asarray(airspeed)[..., None, None], np.asarray(density)[..., None, None]
         damping = self.damping + density * speed * np.asarray(self.airload_damping)
         stiffness = self.stiffness + density * speed**2 * np.asarray(self.airload_stiffness)
-        return in_air(self, _LoadedModes, damping, stiffness)
+        loads = None if self.airload_inputs is None else density * speed**2 * np.asarray(self.airload_inputs)
+        return in_air(self, _LoadedModes, damping, stiffness, loads=loads)
 
 
 def in_airstream(support: NormalModes, strips: Strips, aerodynamics: WingAerodynamics) -> WingInAirstream:
@@ -158,9 +228,11 @@ def in_airstream(support: NormalModes, strips: Strips, aerodynamics: WingAerodyn
         raise InputError("strips", strips.rise.shape[-1], rule)
     damping, stiffness = aerodynamics.matrices(strips)
     own = {entry.name: getattr(support, entry.name) for entry in fields(NormalModes)}
-    return WingInAirstream(
-        **own, airload_damping=damping, airload_stiffness=stiffness, wing=aerodynamics.lift(strips)
-    )
+    airloads: dict[str, Any] = {"airload_damping": damping, "airload_stiffness": stiffness}
+    airloads["wing"] = aerodynamics.lift(strips)
+    if aerodynamics.flap_chord is not None:
+        own["inputs"], airloads["airload_inputs"] = (FLAPERON,), aerodynamics.flap_loads(strips)
+    return WingInAirstream(**own, **airloads)
 
 
 def beam_strips(structure: BeamStructure, shapes: ArrayLike) -> Strips:

@@ -13,7 +13,12 @@ percentiles           percentiles of a sample as text, with bounds where designs
 csv_text              records of any kind as CSV
 blade_table           the hinged blade of a table of stations: fields, comparison, lines of a deck
 boundary_table        boundaries against an input: records and lines
+envelope_table        an envelope as records, as lines and as sentences
+margin_table          margins of control loops: records, cells and sentences
 amounts_table         what the inputs of a case amount to, as lines for a terminal and a report
+record_table          modes that were identified in a record, as rows of points
+calibration_table     calibrated inputs and the test points, as records
+response_table        responses to gusts, as records
 points                points of a CSV file, to stand on plots beside results
 ====================  =========================================================================
 
@@ -24,9 +29,14 @@ __all__ = [
     "amounts_table",
     "blade_table",
     "boundary_table",
+    "calibration_table",
     "csv_text",
+    "envelope_table",
+    "margin_table",
     "percentiles",
     "points",
+    "record_table",
+    "response_table",
     "sensitivity_summary",
     "study_summary",
     "study_table",

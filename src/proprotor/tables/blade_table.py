@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from proprotor.model.blade_comparison import GOOD, BladeComparison, Compared
+from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.hinged_blade import HingedBlade
+from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING
 
 _UNITS = {
     "radius": "m",
@@ -104,8 +106,11 @@ def verdict(compared: BladeComparison) -> Iterator[str]:
     yield f"A hinged blade is no good model of this blade in: {worst}."
 
 
-def deck_lines(found: HingedBlade, file: str) -> str:
-    """Return the fields of [rotor] that were found, as lines of a deck, each with its source."""
+def deck_lines(found: HingedBlade, table: BladeStations, file: str) -> str:
+    """Return the fields of [rotor] that were found, as lines of a deck, each with its source.
+
+    Where the table has the centre of the mass, the mass stands by stations in place of its integrals.
+    """
     rpm = found.rotor_speed * 30 / np.pi
     low, high = np.degrees([found.pitch.min(), found.pitch.max()])
     source = (
@@ -113,8 +118,30 @@ def deck_lines(found: HingedBlade, file: str) -> str:
     )
     source = source.replace("\\", "/").replace('"', "'")
     lines = ["[rotor]"]
+    by_stations = () if table.mass_offset is None else MASS_INTEGRALS
     for name, value in found.numbers.items():
+        if name in by_stations:
+            continue
         unit = unit_of(name)
         text = f'"{_shown(name, value):.10g} {unit}"' if unit else f"{value:.10g}"
         lines.append(f'{name} = {{ value = {text}, status = "derived", source = "{source}" }}')
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *_lines_along(table, source)]) + "\n"
+
+
+def _lines_along(table: BladeStations, source: str) -> Iterator[str]:
+    """Yield the places on the chord along the blade, as lines of a deck, and the mass to which they belong."""
+    wanted = {"aerodynamic_center": ("aerodynamic_center", "m", HELD)}
+    if table.mass_offset is not None:
+        wanted |= {
+            "mass_distribution": ("mass_per_length", "kg/m", NOTHING),
+            "mass_offset": ("mass_offset", "m", HELD),
+        }
+    for name, (column, unit, beyond) in wanted.items():
+        values = getattr(table, column)
+        if values is None:
+            continue
+        r, value = (
+            ", ".join(f"{number:.10g}" for number in part) for part in (table.radius / table.tip, values)
+        )
+        told = f'unit = "{unit}", beyond = "{beyond}", status = "derived", source = "{source}"'
+        yield f"{name} = {{ r_over_R = [{r}], value = [{value}], {told} }}"

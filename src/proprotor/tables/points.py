@@ -8,8 +8,9 @@
 
 A column has the name of the quantity of an axis and a unit: ``airspeed``, ``frequency``, ``damping``, or an input by
 its path in the deck or the last word of the path. ``NAME_error``, or ``NAME_low`` and ``NAME_high``, are the ends of an
-error bar, in the unit of NAME; an empty cell is a point without the number. Points of one ``label`` look the same.
-`proprotor.files.csv_columns` has the rules of all such files.
+error bar, in the unit of NAME; an empty cell is a point without the number. Points of one ``label`` look the same;
+``mode`` names the mode of a point, for `proprotor.calibration`. `proprotor.files.csv_columns` has the rules of all such
+files.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ FREQUENCY, DAMPING, GROWTH = "frequency", "damping", "growth"  # names of column
 
 _LARGEST = 1_000_000  # bytes
 _MOST_POINTS = 10_000
-_WORDS = ("label", "source")
+_WORDS = ("label", "source", "mode")
+_NO_QUANTITIES = (*_WORDS, "warning")
 _ENDS = ("_error", "_low", "_high")
 _PER_REV = ("per rev", "/rev")
 
@@ -84,12 +86,15 @@ class Points(NamedTuple):
     columns : mapping of str to Column
     label, source : array of str
         (k,), of each point; the label is the name of the file where the file gives none.
+    mode : array of str
+        (k,), the mode that was measured, by its name in a sweep; "" where the file gives none.
     """
 
     name: str
     columns: Mapping[str, Column]
     label: Array
     source: Array
+    mode: Array
 
     def find(self, quantity: Quantity) -> Column | None:
         """Return the column of a quantity; None where the file has no such column."""
@@ -158,12 +163,14 @@ def _points(name: str, heads: list[Head], rows: list[Line]) -> Points:
     if not rows or len(rows) > _MOST_POINTS:
         raise Fault(f"must have 1 to {_MOST_POINTS} points, a line for each")
     by_name = {head.name: head for head in heads}
-    quantities = [head for head in heads if head.name not in _WORDS and _base_of(head, by_name) is None]
+    quantities = [
+        head for head in heads if head.name not in _NO_QUANTITIES and _base_of(head, by_name) is None
+    ]
     if len(quantities) < 2:
         raise Fault('must have a column for each axis, such as "airspeed [ktas]" and "damping [%]"')
     columns = {head.name: _column(head, by_name, rows) for head in quantities}
-    label, source = (_words(by_name.get(word), rows) for word in _WORDS)
-    return Points(name, columns, np.where(label == "", name, label), source)
+    label, source, mode = (_words(by_name.get(word), rows) for word in _WORDS)
+    return Points(name, columns, np.where(label == "", name, label), source, mode)
 
 
 def _base_of(head: Head, by_name: Mapping[str, Head]) -> Head | None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.rotor.motions import is_of_rotor
+from proprotor.rotor.motions import is_of_loop, is_of_rotor
 from proprotor.typing import Array, Dataset
 
 # Shares of the way that both roots go, and of a root: the line of a name goes on where the name passes no farther.
@@ -110,7 +110,7 @@ def leaps(sweep: Dataset) -> Array:
 
 def support_coordinates(sweep: Dataset) -> list[str]:
     """Return the coordinates of the support, which are all but the rotor's."""
-    return [name for name in sweep.dof.values.tolist() if not is_of_rotor(name)]
+    return [name for name in sweep.dof.values.tolist() if not (is_of_rotor(name) or is_of_loop(name))]
 
 
 def support_share(sweep: Dataset) -> Array:

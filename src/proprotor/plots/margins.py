@@ -1,0 +1,128 @@
+"""Margins of control loops over airspeed: gain above, phase below."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from proprotor.model.doubts import doubts_along, footnotes
+from proprotor.model.stamp import density_of
+from proprotor.plots.canvas import RIGHT, add_footer, grid, note, origin_of
+from proprotor.plots.end_labels import label_lines
+from proprotor.plots.line_of_sweep import Positions, axis_of, written
+from proprotor.plots.style import COLOURS, LABEL_SIZE, UNSTABLE
+from proprotor.stability.margin_ranges import Needed, decibels
+from proprotor.typing import Array, Axes, Dataset, Figure
+
+_TOPS = (30.0, 180.0)  # of the axes, dB and degrees: more is as good as no limit
+_MARKERS = "os^DvP"
+
+
+def plot_margins(
+    margins: Dataset,
+    *,
+    gain_margin: float = 6.0,
+    phase_margin: float = np.pi / 4,
+    unit: str | None = None,
+    title: str = "",
+    footer: str = "",
+) -> Figure:
+    """Draw the gain margin and, below, the phase margin of each control loop over airspeed, in a new figure.
+
+    Parameters
+    ----------
+    margins : xarray.Dataset
+        Result of `Case.margins`.
+    gain_margin : float
+        Needed to either side, in dB, a ratio; a line marks it.
+    phase_margin : float
+        Needed to either side, rad.
+    unit : str, optional
+        Unit of the airspeed, "ktas" by default.
+    title, footer : str
+        Texts above and below the plots.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the unit is no unit of airspeed.
+    """
+    import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
+
+    line = axis_of("airspeed", margins.airspeed.values, "m/s", unit, density_of(margins.attrs))
+    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 7))
+    figure.subplots_adjust(left=0.09, right=RIGHT, top=0.93, bottom=0.08, hspace=0.14)
+    add_footer(figure, " ".join(filter(None, (footer, origin_of(margins.attrs, _doubts(margins, line))))))
+    needed = Needed(gain_margin, phase_margin)
+    _draw(above, line, margins, decibels(margins), _TOPS[0], needed.gain)
+    _draw(
+        below,
+        line,
+        margins,
+        np.degrees(margins.phase_margin.values),
+        _TOPS[1],
+        float(np.degrees(needed.phase)),
+    )
+    above.set_ylabel("Gain margin, either way (dB)")
+    below.set_ylabel("Phase margin (deg)")
+    below.set_xlabel(line.label)
+    figure.suptitle(title, x=0.09, y=0.985, ha="left", va="top", fontsize=11, parse_math=False)
+    return figure
+
+
+def _doubts(margins: Dataset, line: Positions) -> list[str]:
+    """Return a sentence for each doubt along the airspeeds."""
+    doubts = doubts_along(margins.airspeed.values, margins.warning.values)
+    return list(footnotes(doubts, written(line.unit), line.factor))
+
+
+def _draw(ax: Axes, line: Positions, margins: Dataset, values: Array, top: float, needed: float) -> None:
+    """Draw one margin (airspeed, loop) up to a top, the margin that is needed, and where the loop is unstable."""
+    shown = np.where(np.isnan(values), np.nan, np.minimum(values, top))
+    lines = []
+    for place, loop in enumerate(margins.loop.values.tolist()):
+        style: dict[str, Any] = {
+            "color": COLOURS[place % len(COLOURS)],
+            "marker": _MARKERS[place % len(_MARKERS)],
+            "markersize": 4,
+            "linewidth": 2.0,
+        }
+        if np.isfinite(shown[:, place]).any():
+            lines += ax.plot(line.values, shown[:, place], label=str(loop), **style)
+    ax.axhline(needed, color="black", linewidth=0.9, linestyle="--", zorder=1)
+    ax.text(
+        0.01,
+        needed,
+        f"needed: {needed:.3g}",
+        fontsize=LABEL_SIZE,
+        va="bottom",
+        transform=ax.get_yaxis_transform(),
+    )
+    ax.margins(x=0.01)
+    ax.set_ylim(0, top * 1.02)
+    _mark_instability(ax, line, margins.stable.values)
+    grid(ax)
+    if (values > top).any():
+        note(ax, f"At {top:g}: that much or more, or no limit")
+    label_lines(ax, lines, "at some airspeeds")
+
+
+def _mark_instability(ax: Axes, line: Positions, stable: Array) -> None:
+    """Shade the airspeeds at which the closed loop is unstable, from the middle between two airspeeds on."""
+    middles = np.concatenate([line.values[:1], (line.values[1:] + line.values[:-1]) / 2, line.values[-1:]])
+    for place in np.flatnonzero(~stable):
+        ax.axvspan(middles[place], middles[place + 1], color=UNSTABLE, linewidth=0, zorder=0.5)
+    if not stable.all():
+        ax.text(
+            0.99,
+            0.03,
+            "shaded: unstable or not known",
+            fontsize=LABEL_SIZE,
+            ha="right",
+            transform=ax.transAxes,
+        )

@@ -1,0 +1,69 @@
+"""Outputs over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from proprotor.errors import InputError
+from proprotor.plots.canvas import axes_or_new, grid, say_origin
+from proprotor.plots.style import COLOURS
+from proprotor.stability import places_of
+from proprotor.typing import Axes, Dataset
+
+_DASHES = ("-", "--", "-.", ":")
+
+
+def plot_time_response(
+    found: Dataset, ax: Axes | None = None, *, outputs: Sequence[str] | str | None = None
+) -> Axes:
+    """Draw outputs of one unit over time, a line for each output and gust.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Result of `proprotor.responses.time_response.time_response` or
+        `proprotor.responses.discrete_gust.discrete_gust`, at one airspeed.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a new figure by default.
+    outputs : sequence of str, optional
+        Names of outputs of one unit; the first output, force_x where there is one, by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The given axes, or the new ones.
+
+    Raises
+    ------
+    InputError
+        For an unknown output, outputs of several units, and several airspeeds.
+    """
+    known = tuple(found.output.values.tolist())
+    columns = places_of(outputs or ["force_x" if "force_x" in known else known[0]], known, "outputs")
+    units = dict.fromkeys(str(found.output_unit.values[column]) for column in columns)
+    if len(units) > 1:
+        raise InputError("outputs", ", ".join(known[column] for column in columns), "must have one unit")
+    gusts = found.gradient.values.tolist() if "gradient" in found.dims else [None]
+    response = found.response if "gradient" in found.dims else found.response.expand_dims("gradient")
+    if response.ndim != 3:
+        raise InputError("found", f"{response.ndim} axes", "must be at one airspeed: found.isel(airspeed=0)")
+    response = response.transpose("gradient", "time", "output")
+    ax = axes_or_new(ax)
+    for row, gradient in enumerate(gusts):
+        for place, column in enumerate(columns):
+            style: dict[str, Any] = {
+                "color": COLOURS[(row + place) % len(COLOURS)],
+                "linestyle": _DASHES[(row + place) % 4],
+            }
+            label = known[column] + ("" if gradient is None else f", H = {gradient:.3g} m")
+            ax.plot(found.time.values, response.values[row, :, column], label=label, linewidth=1.4, **style)
+    ax.axhline(0, color="black", linewidth=0.6)
+    ax.set(
+        xlabel="Time (s)", ylabel=f"{', '.join(known[column] for column in columns)} ({next(iter(units))})"
+    )
+    ax.margins(x=0)
+    grid(ax)
+    ax.legend(fontsize=8)
+    say_origin(ax, found.attrs, filter(None, [str(found.warning.item())]))
+    return ax
