@@ -18,7 +18,7 @@ from proprotor_equations import BLADE_COORDINATES
 from tests.mutation import one_blade
 from tests.mutation.airload_checks import BEYOND_FLAP, BEYOND_LAG
 from tests.mutation.comparison import Check, Names, matrix_check, values_check
-from tests.mutation.inputs import Quantities, blade_quantities, points, stacked
+from tests.mutation.inputs import GENERAL, Quantities, blade_quantities, points, stacked
 from tests.mutation.one_blade import STEP, Point
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import central_difference, hinge_spring_energy
@@ -55,7 +55,7 @@ def checks() -> Iterator[Check]:
 @functools.cache
 def _moving() -> tuple[Moving, ...]:
     found = []
-    for seed, point in enumerate(points()):
+    for seed, point in enumerate(points(GENERAL)):
         rng = np.random.default_rng([seed, 71])
         found.append(
             Moving(
@@ -167,7 +167,7 @@ def _quantities() -> Quantities:
             for j, axis in enumerate("ijk")
         }
         found.append(own | _turns(_rotation_of(m.tilt)))
-    return blade_quantities() | stacked(found)
+    return blade_quantities(GENERAL) | stacked(found)
 
 
 def _of_segments() -> Quantities:
@@ -180,7 +180,7 @@ def _of_segments() -> Quantities:
 
 
 def _section_waves() -> Quantities:
-    root, coning, lag = (blade_quantities()[name][:, None] for name in ("precone", "coning", "lag"))
+    root, coning, lag = (blade_quantities(GENERAL)[name][:, None] for name in ("precone", "coning", "lag"))
     return _waves(root + 0 * BEYOND_FLAP, root + BEYOND_FLAP * coning, BEYOND_LAG * lag)
 
 
@@ -193,7 +193,7 @@ def _waves(root: Any, cone: Any, lag: Any) -> Quantities:
 
 
 def _angles() -> Iterator[Check]:
-    q = blade_quantities()
+    q = blade_quantities(GENERAL)
     expected = _waves(q["precone"], q["precone"] + q["coning"], q["lag"])
     yield values_check(("moving", "blade_angles"), "sines and cosines", q, expected)
     yield values_check(("moving", "section_angles"), "sines and cosines", _of_segments(), _section_waves())
@@ -201,7 +201,7 @@ def _angles() -> Iterator[Check]:
 
 def _arms() -> Iterator[Check]:
     expected, lines = [], []
-    for p in points():
+    for p in points(GENERAL):
         r, outboard, lag = one_blade.arms(p)
         arms = np.array([r - outboard, outboard, lag, np.ones_like(r)])
         expected.append((p.rotor.mass * arms) @ arms.T)
@@ -213,7 +213,7 @@ def _arms() -> Iterator[Check]:
         lines.append(by_segment)
     sums = np.array(expected)
     size = sums.max(axis=(-2, -1), keepdims=True) * 1e3
-    q = blade_quantities()
+    q = blade_quantities(GENERAL)
     yield matrix_check(("moving", "arm_inertia"), "sums over point masses", q, sums, size)
     sees = ("moving", "arms_of_segment")
     yield matrix_check(sees, "arms along a straight segment", _of_segments(), np.array(lines), 1.0)
@@ -371,9 +371,9 @@ def _energy(point: Point, angles: NDArray) -> Any:
 def _springs() -> Iterator[Check]:
     told = "energy of springs in series and propeller moment"
     places = [_FLAP, _LAG, _PITCH]
-    moments = np.zeros((len(points()), len(_NONE), 1))
-    stiffness = np.zeros((len(points()), len(_NONE), len(_NONE)))
-    for number, p in enumerate(points()):
+    moments = np.zeros((len(points(GENERAL)), len(_NONE), 1))
+    stiffness = np.zeros((len(points(GENERAL)), len(_NONE), len(_NONE)))
+    for number, p in enumerate(points(GENERAL)):
         q = one_blade.quantities(p)
         at = np.array([q["coning"], q["lag"], q["pitch"]])
 
@@ -383,7 +383,7 @@ def _springs() -> Iterator[Check]:
         moments[number, places, 0] = gradient(at)
         columns = [central_difference(lambda h, u=u, at=at: gradient(at + h * u), 0.02) for u in np.eye(3)]
         stiffness[number][np.ix_(places, places)] = np.stack(columns, axis=-1)
-    given = blade_quantities() | {
+    given = blade_quantities(GENERAL) | {
         name: 0.0 for name in ("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling")
     }
     yield matrix_check(("moving", "spring_moment"), told, given, moments, np.abs(moments).max())

@@ -13,7 +13,7 @@ from proprotor.model.floquet import transition
 from proprotor.model.rotor_model import model_of, rotor_model
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import DOFS, GENERALISED, inertia_rows, linearised, rows_in_vacuum
-from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import NO_OFFSETS, SPEED_OF_SOUND, random_rotor
 from tests.oracles.tilted_flight import GRAVITY, TiltedFlight, coordinates_of
 from tests.oracles.virtual_work import airload_rows
 
@@ -30,7 +30,7 @@ class Case:
     """A random rotor in tilted flight, by the package and by the oracle."""
 
     def __init__(self, seed, airspeed, shaft_angle, load_factor, **options):
-        pair = random_rotor(seed, n_blades=3)
+        pair = random_rotor(seed, n_blades=3, **NO_OFFSETS)
         given = {"shaft_angle": shaft_angle, "load_factor": load_factor} | options
         self.model = model_of(pair.package, operation(pair), airspeed, given, around=True)
         self.swing = self.model.swing
@@ -112,7 +112,7 @@ def _along_blades(case, fixed_swing, psi):
 
 def test_axial_flight_is_the_limit():
     """At a hundred thousandth of a degree the average is the model in axial flight, to the square of the angle."""
-    pair = random_rotor(7, tables=True)
+    pair = random_rotor(7, tables=True, **NO_OFFSETS)
     axial = rotor_model(pair.package, operation(pair), [90.0, 120.0])
     tilted = rotor_model(pair.package, operation(pair), [90.0, 120.0], shaft_angle=1e-13)
     for name in "MCKB":
@@ -123,7 +123,7 @@ def test_axial_flight_is_the_limit():
 @pytest.mark.parametrize("n_blades", [3, 4, 5])
 def test_first_order_in_the_shaft_angle(n_blades):
     """A rotor whose shaft is tilted stands where the linear model in axial flight puts it."""
-    pair = random_rotor(n_blades, n_blades=n_blades)
+    pair = random_rotor(n_blades, n_blades=n_blades, **NO_OFFSETS)
     axial = rotor_model(pair.package, operation(pair), 100.0)
     own = [place for place, name in enumerate(DOFS) if place > 5 and name != "azimuth"]
     tilt = DOFS.index("alpha_y")
@@ -139,7 +139,7 @@ def test_first_order_in_the_shaft_angle(n_blades):
 
 def test_first_order_in_the_load_factor():
     """A hub that turns at q, and is accelerated by V q."""
-    pair = random_rotor(11, n_blades=3)
+    pair = random_rotor(11, n_blades=3, **NO_OFFSETS)
     airspeed, small = 100.0, 1e-4
     axial = rotor_model(pair.package, operation(pair), airspeed)
     own = [place for place, name in enumerate(DOFS) if place > 5 and name != "azimuth"]
@@ -222,7 +222,7 @@ def test_a_march_repeats_itself_and_carries_a_disturbance_as_the_transition_does
 
 
 def test_axial_oracle_is_the_flight_without_angle():
-    pair = random_rotor(5, n_blades=3)
+    pair = random_rotor(5, n_blades=3, **NO_OFFSETS)
     rotor, trim = pair.oracle(
         type("T", (), {"collective": 0.7, "coning": -0.02, "lag": 0.03, "elastic_pitch": -0.04})
     )
@@ -235,7 +235,7 @@ def test_axial_oracle_is_the_flight_without_angle():
 
 def test_a_wind_from_the_side_is_the_tilt_of_a_shaft():
     """The frame that turns, against a rotation of the hub itself: the wind in its axes and the loads are the same."""
-    pair = random_rotor(5, n_blades=3)
+    pair = random_rotor(5, n_blades=3, **NO_OFFSETS)
     rotor, trim = pair.oracle(
         type("T", (), {"collective": 0.7, "coning": -0.02, "lag": 0.03, "elastic_pitch": -0.04})
     )
