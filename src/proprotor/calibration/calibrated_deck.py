@@ -9,7 +9,6 @@ from proprotor.calibration.calibrate import Calibration
 from proprotor.datum import Datum, deck_unit
 from proprotor.deck.file import read_tables
 from proprotor.deck.settings import with_settings
-from proprotor.deck.template import deck_text, toml
 
 
 def calibrated_deck(
@@ -39,6 +38,8 @@ def calibrated_deck(
     InputError
         For a base that cannot be read.
     """
+    from proprotor.deck.template import deck_text, toml  # here, because its fields take long to import
+
     found = calibration.found
     tables = read_tables(base)
     source = f"calibrated to {found.attrs['points']}"
