@@ -98,7 +98,7 @@ def elastic_coupling() -> sp.Expr:
     return -s.pitch_flap_coupling * kin.q["flap"] - s.pitch_lag_coupling * kin.q["lag"]
 
 
-def _on_segment(expression: sp.Expr) -> sp.Expr:
+def on_segment(expression: sp.Expr) -> sp.Expr:
     """The arms as they are on a segment that lies on one side of each hinge; trim angles count only beyond theirs."""
     flap, lag = kin.beyond_flap_hinge, kin.beyond_lag_hinge
     outboard = flap * (s.radial_station - s.flap_hinge_offset)
@@ -362,7 +362,7 @@ def _line_and_arm() -> list[tuple[sp.Symbol, sp.Expr]]:
     )
 
     def linear(expression: sp.Expr) -> list[sp.Expr]:
-        polynomial = ring.reduced(ring(name_trigonometry(_on_segment(expression), SEGMENT_ANGLES)))
+        polynomial = ring.reduced(ring(name_trigonometry(on_segment(expression), SEGMENT_ANGLES)))
         return [sp.factor_terms(polynomial.as_expr().expand().coeff(r, power)) for power in (0, 1)]
 
     steps = [

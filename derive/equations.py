@@ -19,6 +19,7 @@ from derive import (
     inertia,
     lift_lag,
     lift_slope,
+    moving,
     multiblade,
     offset_mass,
     pitch,
@@ -41,6 +42,7 @@ from derive.kinds import (
     ROW_EQUATION,
     Dropped,
     Step,
+    arms_matrix,
     assembly,
     blade_matrix,
     circulation_loads,
@@ -48,6 +50,7 @@ from derive.kinds import (
     column,
     element_matrix,
     element_motion,
+    geometry_matrix,
     loads_matrix,
     motion_matrix,
     product,
@@ -96,6 +99,10 @@ STRAIN = f"strain energy of {SHAPES}"
 KINETIC = f"kinetic energy of {SHAPES}"
 TURNING = "energies of an Euler-Bernoulli blade that bends while it turns"
 ENGINE = "energies of engine and shaft on the azimuth of Eq. 17"
+TILTED = "a yoke tilted by a finite angle, the tilt of Eq. 1"
+PITCHED = "pitch of Eqs. 33 and 34 with a tilted yoke and a tilted swashplate"
+TURNED = "virtual rotations of the sections, Eqs. 2-11"
+SPRUNG = f"{PAPER}, Eqs. 18-24 and 32-34, at the pitch of a moving trim"
 WORK = f"{PAPER}, virtual work of Eqs. 12 and 32"
 OF_BLADE = f"{PAPER}, Eqs. 4-16 and 32-34"
 OF_ROTOR = f"{PAPER}, Eqs. 4-17 and 32-34"
@@ -226,6 +233,23 @@ BEAM = (
     element_matrix("torsion_stiffness", beam.torsion_stiffness, STRAIN, 0),
     element_matrix("axial_stiffness", beam.axial_stiffness, STRAIN, 0),
 )
+MOVING = (
+    values("blade_angles", moving.blade_angles, REFERENCE_LINE),
+    values("section_angles", moving.section_angles, REFERENCE_LINE),
+    values("tilt_of_yoke", moving.tilt_of_yoke, TILTED),
+    arms_matrix("arm_inertia", moving.arm_inertia, HINGES, moving.ARM_NAMES, 1),
+    arms_matrix("arms_of_segment", moving.arms_of_segment, REFERENCE_LINE, moving.LINE_ROWS),
+    geometry_matrix("points", moving.points, REFERENCE_LINE, moving.POINT_ROWS),
+    geometry_matrix("axes", moving.axes, REFERENCE_LINE, moving.AXIS_ROWS),
+    geometry_matrix("pitch_of_blade", moving.pitch_of_blade, PITCHED, moving.PITCH_ROWS),
+    geometry_matrix("rotation_of_section", moving.rotation_of_section, TURNED, ("rotation",), BLADE),
+    trim_velocity(moving.trim_velocity),
+    work_matrix("force_stiffness", moving.force_stiffness, STEADY_LOADS, BLADE, BLADE),
+    work_matrix("moment_stiffness", moving.moment_stiffness, STEADY_LOADS, BLADE, BLADE),
+    work_matrix("pitch_stiffness", moving.pitch_stiffness, PITCHED, BLADE, BLADE),
+    column("spring_moment", moving.spring_moment, SPRUNG, BLADE, ROW_EQUATION),
+    work_matrix("spring_stiffness", moving.spring_stiffness, SPRUNG, BLADE, BLADE),
+)
 BLADE_ELEMENT = (
     station_motion("motion", blade_element.motion, TURNING),
     values("tension", blade_element.tension, TURNING),
@@ -250,6 +274,7 @@ STEPS = {
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),
         Step("drive_train", "Engine and shaft on the rotor's azimuth", DRIVE_TRAIN),
         Step("rotor", "A whole rotor in one call", ROTOR, "rotor.py.jinja"),
+        Step("moving", "One blade about a trim that moves", MOVING),
         Step("beam", "A beam element, x up, y along it, z forward", BEAM),
         Step("blade_element", "An element of an elastic blade, per length", BLADE_ELEMENT),
     )

@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive import airloads, beam, blade_element, function, multiblade
+from derive import airloads, beam, blade_element, function, moving, multiblade
 from derive import kinematics as kin
 from derive.coordinates import (
     LOAD,
@@ -197,12 +197,12 @@ def virtual_motion(rows: Iterable[str], drops: bool = False) -> Line:
     )
 
 
-def trim_velocity(drops: bool = False) -> Line:
+def trim_velocity(derivation: Derivation = airloads.trim_velocity, drops: bool = False) -> Line:
     """Make the velocity of the air along a segment in trim."""
     motions = names(motion for motion in SEGMENT_MOTIONS if motion.argument != "theta")
     return matrix(
         "trim_velocity",
-        airloads.trim_velocity,
+        derivation,
         "u_T and u_P of Eqs. 14-15 at trim",
         motions,
         ("trim",),
@@ -225,6 +225,33 @@ def motion_matrix(
         return plus(MOTION[motion].dimension, per_time(order), minus=coordinate_dimension(column))
 
     return matrix(name, derivation, origin, names(SEGMENT_MOTIONS), columns, dimension, drops=drops)
+
+
+def geometry_matrix(
+    name: str,
+    derivation: Derivation,
+    origin: str,
+    rows: Iterable[str],
+    columns: Iterable[str] = (*kin.COORDINATES, "value"),
+) -> Line:
+    """Make numbers at trim, such as directions and angles, and their change with each coordinate."""
+
+    def dimension(_: str, column: str) -> Dimension:
+        return NUMBER if column == "value" else plus(NUMBER, minus=coordinate_dimension(column))
+
+    return matrix(name, derivation, origin, rows, columns, dimension)
+
+
+def arms_matrix(name: str, derivation: Derivation, origin: str, rows: tuple[str, ...], mass: int = 0) -> Line:
+    """Make what is linear in the arms of a blade, or with `mass` integrals of the mass times two arms."""
+
+    def length(name: str) -> int:
+        return {"hub_arm": 0, "at_center": 0, "per_radius": -1}.get(name, 1)
+
+    def dimension(row: str, column: str) -> Dimension:
+        return mass, length(row) + length(column), 0
+
+    return matrix(name, derivation, origin, rows, moving.ARM_NAMES, dimension)
 
 
 def work_matrix(

@@ -13,6 +13,7 @@ from proprotor.stability.attribution import attribution
 from proprotor.stability.boundaries import boundaries
 from proprotor.stability.boundary_against import boundary_against
 from proprotor.stability.envelope import envelope
+from proprotor.stability.floquet import floquet
 from proprotor.stability.flutter import flutter_point
 from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.stability.map import stability_map
@@ -40,6 +41,7 @@ class Case(Configuration):
     sensitivity = sensitivity
     attribution = attribution
     stability_map = stability_map
+    floquet = floquet
     growth_constraint = growth_constraint
     envelope = envelope
 

@@ -43,6 +43,7 @@ OPTIONS = (
     {"pitch": "coupling"},
     {"airloads": "none"},
     {"lift": "lagged"},
+    {"shaft_angle": 0.02},
     {
         "structure": "tabulated",
         "frequencies": pp.BladeFrequencies(at_rotor_speed=40.0, flap=1.1, lag=1.6, cyclic_flap=1.3),
@@ -52,12 +53,8 @@ OPTIONS = (
 )
 
 
-# What the model does not call: tests/derive/test_equations_alone.py compares the first with the model, and the model
-# takes the last from the fused functions.
-FOR_USE_ALONE = {
-    ("rotor", "matrices"),
-    ("coordinates", "transform"),
-}
+# What the model does not call: it takes the same from the fused functions, which tests/derive/test_fused.py compares.
+FOR_USE_ALONE = {("rotor", "matrices")}
 
 
 def test_every_generated_function_is_of_the_model(monkeypatch):

@@ -22,6 +22,7 @@ from proprotor.rotor.motions import HUB, SECOND, motions, name_list, reactionles
 from proprotor.support.matrix_files import read_matrix_market
 from proprotor.support.matrix_market import read_matrix
 from proprotor.tables.points import read_points
+from tests import extras
 from tests.commands.test_command_contract import SUCCEED
 
 DECK = 'base = "xv15-uncoupled"\n[case]\nname = "mine"\ntitle = "Mine"\n'
@@ -211,6 +212,8 @@ def test_coordinates_that_are_accepted_have_modes_of_different_names(names):
 @pytest.mark.parametrize("command", SUCCEED)
 def test_every_command_works_on_a_terminal_of_few_characters(command, encoding, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    for name, text in (("decay.csv", extras.DECAY), ("points.csv", extras.POINTS)):
+        (tmp_path / name).write_text(text)
     for arguments in SUCCEED[command]:
         result = CliRunner(charset=encoding).invoke(main, [command, *arguments], env={"COLUMNS": "200"})
         assert result.exit_code == 0, (arguments, result.output, result.exception)

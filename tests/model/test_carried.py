@@ -104,6 +104,11 @@ RESULTS = {
     "LinearModel.submodel": lambda case, **o: case.linearize(AT, **o).submodel(("beam", "chord")),
 }
 TAKING_A_RESULT = {"boundary_lines.boundary_lines"}
+# With a shaft angle or a load factor, which not all other options go with.
+ABOUT_A_PERIODIC_TRIM = {
+    "Case.around": lambda case, **o: case.around(AT, **o),
+    "Case.floquet": lambda case, **o: case.floquet(AT, **o),
+}
 OF_A_ROTOR = {"rotor_model"}  # alone: the options, and no case
 OF_LOOPS = {"Case.margins"}  # of a case with control loops
 
@@ -152,7 +157,16 @@ def test_the_list_of_results_is_complete():
             for p in inspect.signature(entry).parameters.values()
         )
     }
-    assert taking - set(RESULTS) == TAKING_A_RESULT | OF_A_ROTOR | OF_LOOPS
+    assert taking - set(RESULTS) == TAKING_A_RESULT | OF_A_ROTOR | OF_LOOPS | set(ABOUT_A_PERIODIC_TRIM)
+
+
+@pytest.mark.parametrize("name", ABOUT_A_PERIODIC_TRIM)
+def test_results_about_a_periodic_trim_say_its_flight(name):
+    given = {"shaft_angle": 0.02, "load_factor": 1.5, "locked": "gimbal"}
+    own = stamp_of(ABOUT_A_PERIODIC_TRIM[name](CASE, **given))
+    assert json.loads(own["options"]) == expected(CASE, **given)
+    told = stamp.line(own)
+    assert "shaft angle 0.02 rad" in told and "load factor 1.5" in told
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -250,6 +264,9 @@ OTHERWISE = {
     "lift": "lagged",
     "rotor_speed": "constant",
     "reactionless": True,
+    "cyclic": "level",
+    "shaft_angle": 0.02,
+    "load_factor": 2.0,
     "locked": ("gimbal", "lag"),
     "pitch_flap_coupling": 0.1,
     "pitch_lag_coupling": -0.2,

@@ -15,6 +15,7 @@ from tests.mutation import (
     blade_checks,
     blade_element_checks,
     lag_checks,
+    moving_checks,
     rotor_checks,
     section_checks,
 )
@@ -29,6 +30,7 @@ def all_checks() -> tuple[Check, ...]:
         section_checks,
         airload_checks,
         lag_checks,
+        moving_checks,
         rotor_checks,
         assembly_checks,
         beam_checks,

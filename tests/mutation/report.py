@@ -29,6 +29,7 @@ held to comes from elsewhere:
 | coordinates | components along a blade's axes, and waves, as numbers |
 | beam | strain of Hermite cubics and masses beside the axis, as sums over Gauss points |
 | blade element | curvature, slope and displacement of Hermite cubics at a station; tension as a sum |
+| moving | points, axes and pitch of a blade with tilted yoke, by complex steps and differences; energies of springs |
 | rotor | one blade of the nonlinear rotor in the air, and sums over 3 to 5 such blades, as numbers |
 | fused | the same rotors, blades and sections; tests/derive/test_fused.py has the readable functions |
 | published | the same nonlinear rotor without what `derive/published.py` says the paper leaves out, stated once more |

@@ -117,14 +117,14 @@ def about_axis(air, station, motion, force):
 
 
 def section_flow(air, station, motion):
-    """φ is written arctan(u_P/u_T): atan2 where the flow meets the leading edge, and analytic there."""
+    """φ is written arctan(u_P/u_T), half a turn on where the flow comes from behind: atan2, and analytic."""
     axis = motion.position.rate + air.airspeed * np.array([0.0, 0.0, 1.0])
     velocity = axis + to_center(air, station, motion).rate
     u_T = -(velocity * motion.chordwise.value).sum(-1)
     u_P = (velocity * motion.normal.value).sum(-1)
     u_R = (axis * motion.spanwise.value).sum(-1)
-    assert (u_T.real > 0).all(), "reversed flow"
-    speed, inflow = np.sqrt(u_T**2 + u_P**2), np.arctan(u_P / u_T)
+    assert ((u_T.real > 0) | (u_P.real > 0)).all(), "reversed flow"
+    speed, inflow = np.sqrt(u_T**2 + u_P**2), np.arctan(u_P / u_T) + np.pi * (u_T.real < 0)
     mach = speed / air.speed_of_sound
     angle_of_attack = motion.pitch.value + np.interp(station, *air.twist) - inflow
     rotation = air.section_damping * nose_up_rotation(motion)

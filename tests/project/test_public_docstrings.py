@@ -305,6 +305,8 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "growth_constraint": lambda case, **more: pp.growth_constraint(case, SPEEDS, (), **more),
     "Case.attribution": lambda case, **more: case.attribution(150.0, **more),
     "Case.stability_map": lambda case, **more: case.stability_map(AXES, **more),
+    "Case.around": lambda case, **more: case.around(150.0, shaft_angle=0.05, **more),
+    "Case.floquet": lambda case, **more: case.floquet(150.0, shaft_angle=0.05, **more),
     "Case.boundary_against": lambda case, **more: case.boundary_against(
         {"rotor.precone": [0.01, 0.04]}, SPEEDS, **more
     ),

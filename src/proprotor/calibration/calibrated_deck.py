@@ -8,8 +8,6 @@ from collections.abc import Mapping
 from proprotor.calibration.calibrate import Calibration
 from proprotor.datum import Datum, deck_unit
 from proprotor.deck.file import read_tables
-from proprotor.deck.settings import with_settings
-from proprotor.deck.template import deck_text, toml
 
 
 def calibrated_deck(
@@ -39,6 +37,10 @@ def calibrated_deck(
     InputError
         For a base that cannot be read.
     """
+    # Here, because the fields of decks take long to import.
+    from proprotor.deck.settings import with_settings
+    from proprotor.deck.template import deck_text, toml
+
     found = calibration.found
     tables = read_tables(base)
     source = f"calibrated to {found.attrs['points']}"

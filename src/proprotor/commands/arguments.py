@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import click
 from click.shell_completion import CompletionItem
-from click.types import StringParamType
+from click.types import FloatParamType, StringParamType
 
 from proprotor.case import Case, list_cases, load_case
 from proprotor.commands.exit_codes import EXIT_CODES
@@ -33,7 +33,13 @@ FREQUENCY = Quantity("frequency", "rad/s", 1.0, {"per rev": 1.0})
 DAMPING = Quantity("damping", "", 1.0)
 
 _NUMBERS = ("pitch_flap_coupling", "pitch_lag_coupling")  # options of the model that are plain numbers
-_MODEL = (*CHOICES, *_NUMBERS, "locked")  # the options of the model, in the order in which results list them
+_FLIGHT = ("shaft_angle", "load_factor")  # the angle with a unit, and a plain number
+_MODEL = (
+    *CHOICES,
+    *_NUMBERS,
+    *_FLIGHT,
+    "locked",
+)  # the options of the model, in the order in which results list them
 _RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # the characters of a range; the unit follows them
 
 
@@ -62,6 +68,22 @@ class Request(NamedTuple):
             For a deck or field that cannot be used.
         """
         return load_case(self.name, self.settings)
+
+
+class Angle(FloatParamType):
+    """The type of an angle with its unit, such as "5deg"; rad without a unit."""
+
+    name = "angle"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        try:
+            return float(value)
+        except ValueError:
+            pass
+        try:
+            return to_si(value, "rad")
+        except InputError as error:
+            self.fail(f"{value!r} {error.rule}", param, ctx)
 
 
 class CaseName(StringParamType):
@@ -304,6 +326,8 @@ def model_options(command: Command) -> Command:
     meanings = _meanings(Options)
     locked_help = f"{meanings['locked']} Repeatable."
     command = click.option("--locked", multiple=True, type=click.Choice(LOCKABLE), help=locked_help)(command)
+    for name, kind in reversed([*zip(_FLIGHT, (Angle(), float), strict=True)]):
+        command = click.option(f"--{name.replace('_', '-')}", type=kind, help=meanings[name])(command)
     for name in reversed(_NUMBERS):
         command = click.option(f"--{name.replace('_', '-')}", type=float, help=meanings[name])(command)
     for name, choices in reversed(CHOICES.items()):

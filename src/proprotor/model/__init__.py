@@ -10,6 +10,8 @@ configuration, and the stamp that every result has.
     theodorsen           lift that lags by Theodorsen's function, at one frequency after the other
     wing_lift_lag        the lag of a wing's lift, added to a coupled model
     rotor_model          the rotor alone on its six hub coordinates, from the generated functions
+    tilted_rotor         the rotor alone about a periodic trim, around the turn and averaged
+    floquet              Floquet exponents beside the roots of the average
     rigid_propeller      a propeller with published whirl derivatives in place of a rotor
     blade_comparison     a hinged blade beside the elastic blade that it stands for
     mass_at_rest         the rotor's mass matrix at rest with locked blades
@@ -74,6 +76,7 @@ __all__ = [
     "deck_fingerprint",
     "doubts",
     "first_order",
+    "floquet",
     "html",
     "in_closed_form",
     "lagging_blade",

@@ -13,6 +13,7 @@ from proprotor.control.control_loop import ControlLoop, loop_text
 from proprotor.datum import Datum
 from proprotor.errors import InputError
 from proprotor.model.closed_loop import close_loops
+from proprotor.model.floquet import checked
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
 from proprotor.model.pair import mount_pair
@@ -23,6 +24,7 @@ from proprotor.model.wing_lift_lag import with_wing_lag
 from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.operation import Operation
+from proprotor.rotor.options import parse_options
 from proprotor.rotor.rotor import Rotor
 from proprotor.support.airframe import Airframe
 from proprotor.support.normal_modes import NormalModes
@@ -142,8 +144,51 @@ class Configuration:
         InputError
             As `linearize`.
         """
+        if parse_options(self.model_options(options)).is_tilted:
+            return checked(self.around(airspeed, **options), self.passage)
+        return self._linearized(airspeed, options)
+
+    def around(self, airspeed: Any, **options: Any) -> LinearModel:
+        """Return the equations of motion about a periodic trim, with a last axis of the batch for azimuth.
+
+        Parameters
+        ----------
+        airspeed : as `linearize`
+        **options
+            See `proprotor.rotor.options.Options`, with a shaft angle or a load factor.
+
+        Returns
+        -------
+        LinearModel
+            M, C, K (..., azimuths, n, n) at equal steps of one Nth of a turn.
+
+        Raises
+        ------
+        InputError
+            As `linearize`; without a shaft angle and a load factor, for a free aircraft, and with control loops.
+        """
+        if not parse_options(self.model_options(options)).is_tilted:
+            raise InputError("load_factor", 1, "or shaft_angle must be another than in straight axial flight")
+        name = "load_factor" if np.all(np.equal(options.get("shaft_angle", 0), 0)) else "shaft_angle"
+        if isinstance(self.support, Airframe):
+            rule = (
+                "goes with a rotor on a support that stands still: a free aircraft that flies at an angle turns its "
+                "weight and the lift of its wing as it rolls, which the model leaves out"
+            )
+            raise InputError(name, options.get(name), rule)
+        if self.loops:
+            rule = "goes without control loops: what averaging leaves out is known for the open loop alone"
+            raise InputError(name, options.get(name), rule)
+        return self._linearized(airspeed, options, around=True)
+
+    @property
+    def passage(self) -> Any:
+        """Blade passage frequency NΩ, rad/s."""
+        return np.asarray(self.rotor.n_blades) * np.asarray(self.operation.rotor_speed)
+
+    def _linearized(self, airspeed: Any, options: Mapping[str, Any], around: bool = False) -> LinearModel:
         own = self.model_options(options)
-        rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self)
+        rotor_alone = model_of(self.rotor, self.operation, airspeed, own, case=self, around=around)
         support = self.support.at(rotor_alone.airspeed, self.operation.density)
         if isinstance(support, Airframe):
             coupled = self._pair(rotor_alone, support, airspeed, options)

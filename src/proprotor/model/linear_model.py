@@ -20,6 +20,7 @@ from proprotor.typing import Array, Dataset
 
 if TYPE_CHECKING:
     from proprotor.model.state_space import StateSpace
+    from proprotor.rotor.moving_blade import Motion
 
 SWASHPLATE = ("collective", "cyclic_1c", "cyclic_1s")
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
@@ -91,6 +92,9 @@ class LinearModel:
     left_hub : array (..., 6, n), optional
         Of two rotors: motion of the left hub per unit of each coordinate, m and rad, in the mirrored axes of the left
         rotor.
+    swing : Motion, optional
+        Of a rotor alone at an angle or in a pull-up: what its blades and its gimbal do around the turn, see
+        `proprotor.rotor.moving_blade`.
     inputs : tuple of str
         Names of the columns of `B`: `INPUTS`, of two rotors "symmetric collective" and so on; then the support's.
     feedback : Feedback, optional
@@ -117,6 +121,7 @@ class LinearModel:
     left: LinearModel | None = None
     left_hub: Array | None = None
     inputs: tuple[str, ...] = INPUTS
+    swing: Motion | None = None
     feedback: Feedback | None = None
 
     def __repr__(self) -> str:

@@ -24,6 +24,7 @@ _UNITS = {  # of numbers in the options of a record
     "engine_damping": "N m s/rad",
     "interconnect_stiffness": "N m/rad",
 }
+_UNITS_OF_OPTIONS = {"shaft_angle": "rad"}
 _ABSCISSAE = {"collective": "rad", "airspeed": "m/s"}  # of a table of blade frequencies
 
 
@@ -65,7 +66,7 @@ def plain(value: Any) -> Any:
 def options_text(options: Mapping[str, Any]) -> str:
     """Return options, given as plain data, in a line; options that are not set are left out."""
     return ", ".join(
-        f"{name.replace('_', ' ')} {option_text(value)}"
+        f"{name.replace('_', ' ')} {option_text(value)} {_UNITS_OF_OPTIONS.get(name, '')}".rstrip()
         for name, value in options.items()
         if value is not None
     )

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _RECORDS = {"frequencies": BladeFrequencies, "drive_train": DriveTrain}
 # Options whose plain data are a text in place of functions and large arrays.
-_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling")
+_ARRAYS = ("equations", "pitch_flap_coupling", "pitch_lag_coupling", "shaft_angle", "load_factor")
 
 
 def options_of(found: Mapping[Any, Any], case: Configuration, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,6 @@ from proprotor_equations import offset_mass, pitch
 from proprotor.model.batches import joint_shape
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
-from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.kept import kept
 from proprotor.rotor.operation import Operation
@@ -29,13 +28,12 @@ _HINGE_INERTIAS = ("flap_hub_inertia", "lag_hub_inertia", "flap_lag_inertia")
 _SOFTEST_SPRING = 1e-100  # relative to the other spring: a free hinge, without a division by zero in series
 
 
-def batch_shape(
-    rotor: Rotor, operation: Operation, airspeed: Array, drive_train: DriveTrain | None = None
-) -> tuple[int, ...]:
+def batch_shape(rotor: Rotor, operation: Operation, airspeed: Array, options: Options) -> tuple[int, ...]:
     """Return the shape of all arrays among the inputs, broadcast together."""
     inputs = [airspeed, *(getattr(operation, name) for name in _AIR)]
     inputs += [] if isinstance(operation.trim, str) else list(operation.trim.values())
-    inputs += [] if drive_train is None else list(vars(drive_train).values())
+    inputs += [] if options.drive_train is None else list(vars(options.drive_train).values())
+    inputs += [options.shaft_angle, options.load_factor]
     return joint_shape(shape_of(rotor), *(np.shape(value) for value in inputs if _may_vary(value)))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,13 +45,14 @@ from proprotor.rotor.section_loads import (
     load_moments,
     segment_quantities,
 )
-from proprotor.rotor.trim import Trim, trim_target
+from proprotor.rotor.trim import Target, Trim, trim_target
 from proprotor.rotor.trim_solver import Settled, solve_trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
+    from proprotor.rotor.moving_blade import Motion
 
 _PITCH = [place for place, coordinate in enumerate(FIXED) if coordinate.angle == "pitch"]
 _KINDS = {"M": "mass", "C": "damping", "K": "stiffness"}
@@ -88,12 +89,16 @@ def model_of(
     airspeed: Any,
     options: Mapping[str, Any],
     case: Configuration | None = None,
+    around: bool = False,
 ) -> LinearModel:
-    """Return the rotor alone as `rotor_model` does, with the case to which the rotor belongs, if there is one."""
+    """Return the rotor alone as `rotor_model` does, with the case to which the rotor belongs, if there is one.
+
+    With `around` the model of a rotor with a periodic trim has a last axis of the batch for azimuths, and no averages.
+    """
     choice = parse_options(options)
     _check_pitch(rotor, choice)
     speed = in_metres_per_second(airspeed, operation.density)
-    shape = batch_shape(rotor, operation, speed, choice.drive_train)
+    shape = batch_shape(rotor, operation, speed, choice)
     points = prod(shape)
     _check_memory(rotor, choice, points)
     quantities = model_quantities(rotor, operation, choice, speed, shape)
@@ -108,25 +113,80 @@ def model_of(
     if choice.blades_lag:
         lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
     coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
-    found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
+    if choice.is_tilted:
+        made = _about_periodic_trim(_Tilted(rotor, choice, target, speed, shape, around), sections, settled)
+    else:
+        found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
+        made = _Made(found, settled.trim, speed, shape)
     matrices: dict[str, Any] = {
-        name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in found.items()
+        name: matrix.reshape(*made.shape, *matrix.shape[-2:]) for name, matrix in made.matrices.items()
     }
     model = LinearModel(
         **matrices,
         dofs=tuple(coordinate.name for coordinate in coordinates),
-        trim=Trim(**{name: value.reshape(shape) for name, value in vars(settled.trim).items()}),
-        airspeed=speed if speed.shape == shape else np.broadcast_to(speed, shape),
+        trim=Trim(**{name: value.reshape(made.shape) for name, value in vars(made.trim).items()}),
+        airspeed=np.broadcast_to(made.airspeed, made.shape)
+        if made.airspeed.shape != made.shape
+        else made.airspeed,
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
         rates=tuple(coordinate.name for coordinate in coordinates if coordinate.angle == LIFT),
         apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
+        swing=made.swing,
     )
     if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
         model = with_mast(model, choice.drive_train)
         coordinates = (*coordinates, Coordinate(MAST_TWIST, MAST_TWIST, 0, "", "rad"))
     free = _free_coordinates(choice, coordinates)
     return model if free == model.dofs else model.submodel(free)
+
+
+class _Made(NamedTuple):
+    """M, C, K and B of all points with trim, airspeed and shape of the batch, and the swing of a periodic trim."""
+
+    matrices: dict[str, Array]
+    trim: Trim
+    airspeed: Array
+    shape: tuple[int, ...]
+    swing: Motion | None = None
+
+
+class _Tilted(NamedTuple):
+    """A rotor at an angle or in a pull-up: see `model_of`."""
+
+    rotor: Rotor
+    options: Options
+    target: Target
+    airspeed: Array
+    shape: tuple[int, ...]
+    around: bool
+
+
+def _about_periodic_trim(asked: _Tilted, sections: BladeSections, settled: Settled) -> _Made:
+    """Return the matrices of a rotor about its periodic trim, averaged or with a last axis of the batch for azimuth."""
+    # Here, because most uses need none of it.
+    from proprotor.model.tilted_rotor import number_of_blades, tilted_rotor
+
+    options, shape, speed = asked.options, asked.shape, asked.airspeed
+    given = {"airspeed": speed, "shaft_angle": options.shaft_angle, "load_factor": options.load_factor}
+    flight = {name: np.broadcast_to(value, shape).reshape(-1) for name, value in given.items()}
+    n_blades = number_of_blades(asked.rotor)
+    tilted = tilted_rotor(sections, settled, options, asked.target, flight, n_blades)
+    trim, points = tilted.trim, len(settled.trim.reason)
+    found = dict(tilted.matrices if asked.around else tilted.mean())
+    if not options.pitch_is_free:
+        found["B"] = _without_pitch_equations(found["K"], found["B"])
+    whole = {
+        name: np.full((points, *matrix.shape[1:]), np.nan, dtype=matrix.dtype)
+        for name, matrix in found.items()
+    }
+    for name, matrix in found.items():
+        whole[name][tilted.rows] = matrix
+    if asked.around:
+        steps = whole["M"].shape[1]
+        trim = Trim(**{name: value[:, None] for name, value in vars(trim).items()}).broadcast((points, steps))
+        speed, shape = speed[..., None], (*shape, steps)
+    return _Made(whole, trim, speed, shape, tilted.motion.reshaped(asked.shape))
 
 
 def _sections(rotor: Rotor, shape: tuple[int, ...]) -> tuple[BladeSections, BladeSections]:

@@ -51,9 +51,14 @@ Loads and trim:
     trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
 
-All public names of the modules `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`, `from_stations`,
-`fused`, `generated`, `kept`, `lift_lag`, `motions`, `options`, `section_loads` and `smooth_table` belong to the
-face.
+A rotor at an angle to its flight, or in a pull-up:
+    around_the_turn      periodic functions at equal steps of azimuth
+    moving_blade         balance and matrices of a blade about a trim that moves
+    periodic_trim        the trim that moves, by harmonic balance
+
+All public names of the modules `around_the_turn`, `blade_stations`, `elastic_blade`, `element_chain`, `hinged_blade`,
+`from_stations`, `fused`, `generated`, `kept`, `lift_lag`, `motions`, `moving_blade`, `options`, `periodic_trim`,
+`section_loads` and `smooth_table` belong to the face.
 """
 
 from proprotor.rotor.airfoil import Airfoil, SectionCoefficients, SectionModel, Warns
@@ -91,6 +96,7 @@ __all__ = [
     "Target",
     "Trim",
     "Warns",
+    "around_the_turn",
     "elastic_blade",
     "element_chain",
     "from_stations",
@@ -101,7 +107,9 @@ __all__ = [
     "kept",
     "lift_lag",
     "motions",
+    "moving_blade",
     "options",
+    "periodic_trim",
     "section_loads",
     "smooth_table",
     "solve_trim",

@@ -68,6 +68,11 @@ class OffsetMass:
             Lag hinge from the centre of rotation, m.
         mass, offset, twist : callable
             kg/m, m aft of the pitch axis and rad, at radii (..., points).
+
+        Returns
+        -------
+        OffsetMass
+            Integrals in kg m and kg m², of shape (...).
         """
         hinge = np.asarray(hinge)[..., None]
         inner = np.where(np.real(knots) > np.real(hinge), knots, hinge)

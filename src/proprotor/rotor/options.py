@@ -6,11 +6,13 @@ which one, from the rest of the options.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.errors import InputError, check_finite, unknown_name
@@ -28,9 +30,14 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "lift": ("quasi-steady", "lagged", "lagged-blades", "lagged-wing"),
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
+    "cyclic": ("none", "level"),
     "backend": ("numpy", "compiled", "auto"),
 }
-_FURTHER = ("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train")
+_FURTHER = (
+    *("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train"),
+    *("shaft_angle", "load_factor"),
+)
+LARGEST_SHAFT_ANGLE = math.radians(15)
 LOCKABLE = ("flap", "lag", "pitch", "gimbal")
 
 
@@ -82,6 +89,14 @@ class Options:
         Engine and shaft on the rotor's azimuth.
     reactionless : bool
         Keep the blade motions that make no load at the hub, for more than three blades.
+    shaft_angle : float or array that broadcasts with the airspeeds
+        Angle of the shaft above the direction of flight, nose up, rad: the rotor meets the air at this angle. Up to
+        15°.
+    load_factor : float or array that broadcasts with the airspeeds
+        Load factor n of a steady pull-up, whose turn at g(n - 1)/V the rotor follows; 1 in straight flight.
+    cyclic : "none" or "level"
+        With a shaft angle or a load factor: a swashplate without cyclic pitch, or the cyclic pitch that keeps the
+        gimbal level; without a gimbal, the pitch that keeps the blades from flapping once a turn.
     backend : "numpy", "compiled" or "auto"
         What solves the eigenvalue problems: NumPy with LAPACK, or compiled functions for whole batches (see
         `proprotor.compiled`), to rounding the same. "auto" takes these where there is a C compiler, and results say
@@ -108,6 +123,9 @@ class Options:
     rotor_speed: str = "windmilling"
     drive_train: DriveTrain | None = None
     reactionless: bool = False
+    shaft_angle: ArrayLike = 0.0
+    load_factor: ArrayLike = 1.0
+    cyclic: str = "none"
     backend: str = "numpy"
     locked: tuple[str, ...] = ()
 
@@ -143,6 +161,41 @@ class Options:
             raise InputError("drive_train", self.drive_train, 'goes with rotor_speed="windmilling"')
         if self.blades_lag:
             self.check_blades_may_lag(self.lift)
+        for name in ("shaft_angle", "load_factor"):
+            check_finite(name, getattr(self, name))
+        if np.any(np.abs(self.shaft_angle) > LARGEST_SHAFT_ANGLE):
+            rule = (
+                f"must be within {math.degrees(LARGEST_SHAFT_ANGLE):.0f} deg, given in rad: farther from axial flight "
+                "the induced velocity, which the model leaves out, shapes the inflow"
+            )
+            raise InputError("shaft_angle", self.shaft_angle, rule)
+        if self.is_tilted:
+            self._check_tilted()
+
+    def _check_tilted(self) -> None:
+        """Refuse options that the periodic trim of a rotor at an angle, or in a turn, does not serve."""
+        name = "shaft_angle" if np.any(np.not_equal(self.shaft_angle, 0)) else "load_factor"
+        served = {
+            "equations": "consistent",
+            "airloads": "full",
+            "lift": "quasi-steady",
+            "reactionless": False,
+        }
+        for other, choice in served.items():
+            if getattr(self, other) != choice:
+                raise InputError(name, getattr(self, name), f"goes with {other}={choice!r}".replace("'", '"'))
+        if self.structure == "tabulated":
+            raise InputError(name, getattr(self, name), 'goes with structure="coupled" or "diagonal"')
+        if self.pitch == "coupling":
+            raise InputError(name, getattr(self, name), 'goes with pitch="dynamic" or "rigid"')
+        if self.cyclic == "level" and {"gimbal", "flap"} <= {*self.locked}:
+            raise InputError("cyclic", self.cyclic, "needs a gimbal or a flap hinge that is not locked")
+
+    @property
+    def is_tilted(self) -> bool:
+        """Whether the rotor flies at an angle or in a turn, so that its trim is periodic."""
+        at_angle = np.any(np.not_equal(self.shaft_angle, 0))
+        return bool(at_angle or np.any(np.not_equal(self.load_factor, 1)))
 
     def check_blades_may_lag(self, lift: str) -> None:
         """Refuse options without equations for the lag of lift.

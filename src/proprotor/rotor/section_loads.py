@@ -140,8 +140,27 @@ def _air(
         stations["section_damping"] = segments["section_damping"] * sections.along.square
     if beside:
         stations["aerodynamic_center"] = sections.along.center
-        return {**stations, **evaluate(section.air_beside_axis, stations)._asdict()}
-    return {**stations, **evaluate(section.air_at_section, stations)._asdict()}
+        return {
+            **stations,
+            **_in_front_and_behind(stations, evaluate(section.air_beside_axis, stations)._asdict()),
+        }
+    return {
+        **stations,
+        **_in_front_and_behind(stations, evaluate(section.air_at_section, stations)._asdict()),
+    }
+
+
+def _in_front_and_behind(stations: _Quantities, air: dict[str, Any]) -> dict[str, Any]:
+    """Return the air at sections with angles of attack of the right quadrant.
+
+    Near the root of a rotor that flies at an angle, air may come from behind the trailing edge, past axial flow: there
+    the inflow angle is beyond a right angle, and its arctangent is half a turn off.
+    """
+    from_behind = np.real(stations["tangential_velocity"]) < 0
+    if from_behind.any():
+        half_turn = np.where(from_behind, np.copysign(np.pi, np.real(stations["axial_velocity"])), 0.0)
+        air |= {name: air[name] - half_turn for name in ("angle_of_attack", "lift_incidence")}
+    return air
 
 
 def compressible(coefficients: SectionCoefficients, mach: Array) -> SectionCoefficients:

@@ -143,15 +143,15 @@ def with_trim(quantities: Mapping[str, Any], options: Options, state: Mapping[st
     found |= trim_integrals(found)
     if has_offset_mass(found):
         found |= evaluate(offset_mass.trim_integrals, found)._asdict()
-    return found | _springs(options, found)
+    return found | springs(options, found)
 
 
-def _springs(options: Options, quantities: dict[str, Any]) -> dict[str, Any]:
+def springs(options: Options, quantities: dict[str, Any]) -> dict[str, Any]:
     """Return effective flap and lag stiffness and its change with pitch, as the option `structure` has it."""
     if options.frequencies is not None:
         return _springs_of_frequencies(options.frequencies, quantities)
-    springs = effective_stiffness(quantities)
-    return springs | dict.fromkeys(FLAP_LAG, 0.0) if options.structure == "diagonal" else springs
+    found = effective_stiffness(quantities)
+    return found | dict.fromkeys(FLAP_LAG, 0.0) if options.structure == "diagonal" else found
 
 
 def _springs_of_frequencies(frequencies: BladeFrequencies, quantities: dict[str, Any]) -> dict[str, Any]:

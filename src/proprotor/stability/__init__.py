@@ -34,6 +34,7 @@ Boundaries: where damping passes a level
     crossings, brackets     the search for steps with crossings; each crossing found by Newton's method
     boundary, boundaries    records of boundaries; the search along a line of a case
     kinds                   divergence, instability of the rigid body, flutter
+    floquet                 Floquet exponents about a periodic trim
     flutter                 the flutter point: the lowest onset
     in_notebook             boundaries as HTML, for notebooks
     flutter_messages        records and sentences for people
@@ -63,6 +64,7 @@ from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.envelope import envelope
 from proprotor.stability.envelope_dataset import MET, NOT_KNOWN, NOT_MET
+from proprotor.stability.floquet import floquet
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
@@ -150,6 +152,7 @@ __all__ = [
     "few_spectra",
     "find_crossings",
     "flies_free",
+    "floquet",
     "flutter_messages",
     "flutter_point",
     "follow",

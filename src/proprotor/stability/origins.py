@@ -115,6 +115,10 @@ def model_parts(case: Configuration, model: LinearModel, **options: Any) -> dict
         choice = model.origin.options
     if choice.reactionless:
         raise InputError("reactionless", True, "is not taken apart: leave it out")
+    if choice.is_tilted:
+        name = "load_factor" if np.all(np.equal(choice.shaft_angle, 0)) else "shaft_angle"
+        rule = "is not taken apart: the airloads of a periodic trim have no parts of their own"
+        raise InputError(name, getattr(choice, name), rule)
     if not case.loops:
         return _open_parts(case, model, choice)
     dofs, loops = taken_apart(model, case.loops)

@@ -23,6 +23,7 @@ from proprotor.model.first_order import in_one_axis, some_points
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.quantities import batch_shape
 from proprotor.needs import check_memory
+from proprotor.rotor.options import parse_options
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second, values_in_si
@@ -124,8 +125,8 @@ def _check_points(field: str, points: int) -> None:
 
 def _is_batch(case: Configuration, options: Mapping[str, Any]) -> bool:
     """Return whether a case or its options hold arrays, so that one airspeed has many models."""
-    train = case.model_options(options).get("drive_train")
-    return batch_shape(case.rotor, case.operation, np.zeros(()), train) != () or any(
+    choice = parse_options(case.model_options(options))
+    return batch_shape(case.rotor, case.operation, np.zeros(()), choice) != () or any(
         np.ndim(value) > 0 for name, value in options.items() if name.endswith("_coupling")
     )
 

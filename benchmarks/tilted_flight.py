@@ -1,0 +1,109 @@
+"""Flutter of the XV-15 against shaft angle and load factor, and what averaging over azimuth changes of it.
+
+python -m benchmarks.tilted_flight
+
+Boundaries are those of the average; beside each, the change of the damping of its mode by the Floquet exponents.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+import proprotor as pp
+from proprotor.files.output import write_whole
+from proprotor.typing import Array
+from proprotor.units import KNOT
+
+FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tilted-flight.png"
+SCAN = "280:400:20kt"
+ANGLES = (0.0, 2.0, 4.0, 6.0, 8.0, 10.0)  # deg
+LOADS = (-1.0, 0.0, 1.0, 2.0, 2.5)
+LABELS = {"none": "no cyclic pitch: the gimbal tilts", "level": "cyclic pitch keeps the gimbal level"}
+
+
+class Boundary(NamedTuple):
+    """A flutter speed, m/s, its mode, and there the change of that mode's damping ratio by the Floquet exponent."""
+
+    speed: float
+    mode: str
+    change: float
+    worst: float
+
+
+def boundary(case: pp.Case, **options: Any) -> Boundary:
+    """Return the flutter point of a case by the average, beside the Floquet exponent of its mode."""
+    point = case.flutter_point(SCAN, **options)
+    if not ("shaft_angle" in options or "load_factor" in options):
+        return Boundary(point.speed, point.mode, 0.0, 0.0)
+    found = case.floquet(point.speed, **options)
+    mode = list(found.name.values).index(point.mode)
+    roots = found.eigenvalue.values[mode], found.exponent.values[mode]
+    before, after = (-root.real / abs(root) for root in roots)
+    return Boundary(point.speed, point.mode, after - before, float(found.damping_change))
+
+
+def against_angle(case: pp.Case, cyclic: str) -> list[Boundary]:
+    """Return the boundaries at all shaft angles."""
+    return [
+        boundary(case, **({"shaft_angle": np.radians(angle), "cyclic": cyclic} if angle else {}))
+        for angle in ANGLES
+    ]
+
+
+def against_load(case: pp.Case) -> list[Boundary]:
+    """Return the boundaries at all load factors, of the turn of the hub alone."""
+    return [boundary(case, **({"load_factor": load} if load != 1 else {})) for load in LOADS]
+
+
+def table(title: str, name: str, at: tuple[float, ...], found: list[Boundary]) -> Table:
+    """Return boundaries as a table."""
+    whole = Table(title=title)
+    for heading in (name, "flutter, KTAS", "mode", "change of its damping ratio", "largest change of any"):
+        whole.add_column(heading, justify="left" if heading == "mode" else "right")
+    for value, one in zip(at, found, strict=True):
+        whole.add_row(
+            f"{value:g}", f"{one.speed / KNOT:.1f}", one.mode, f"{one.change:+.5f}", f"{one.worst:.4f}"
+        )
+    return whole
+
+
+def write_figure(angles: dict[str, list[Boundary]], loads: list[Boundary]) -> None:
+    """Write boundaries against shaft angle and load factor."""
+    import matplotlib.pyplot as plt
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained", sharey=True)
+    for (cyclic, found), colour in zip(angles.items(), ("#0072B2", "#D55E00"), strict=True):
+        left.plot(ANGLES, _knots(found), "o-", color=colour, label=LABELS[cyclic])
+    right.plot(LOADS, _knots(loads), "o-", color="#0072B2")
+    left.set(xlabel="shaft angle, deg", ylabel="flutter speed, KTAS")
+    right.set(xlabel="load factor (turn of the hub alone)")
+    left.legend(frameon=False, fontsize=8)
+    for axes in (left, right):
+        axes.grid(alpha=0.3)
+        axes.margins(y=0.3)
+    write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))
+    plt.close(figure)
+
+
+def _knots(found: list[Boundary]) -> Array:
+    return np.array([one.speed for one in found]) / KNOT
+
+
+def main() -> None:
+    """Print both tables and write the figure."""
+    case, console = pp.load_case("xv15"), Console()
+    angles = {cyclic: against_angle(case, cyclic) for cyclic in LABELS}
+    loads = against_load(case)
+    for cyclic, found in angles.items():
+        console.print(table(f"XV-15, {LABELS[cyclic]}", "shaft angle, deg", ANGLES, found))
+    console.print(table("XV-15, turn of the hub", "load factor", LOADS, loads))
+    write_figure(angles, loads)
+
+
+if __name__ == "__main__":
+    main()
