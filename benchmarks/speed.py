@@ -5,7 +5,8 @@
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.speed --memory --baseline WORKTREE
 
 Rounds are interleaved: all of one row are timed in turn. A time is processor time, a ratio is the median of the ratios
-of the rounds. One eigenvalue problem, e, is `numpy.linalg.eigvals` of one state matrix of the same points.
+of the rounds. One eigenvalue problem, e, is `numpy.linalg.eigvals` of one state matrix of the same points. With a C
+compiler the rows have the ratio of compiled functions (`backend="compiled"`) from the same rounds.
 
 The earlier version is a worktree of the repository at the last commit before sections had an effective twist:
 
@@ -25,6 +26,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -38,9 +40,11 @@ from benchmarks import environments, fused, stations
 from benchmarks.flutter_cost import DESIGNS
 from benchmarks.peers.cost import BATCHES
 from benchmarks.peers.lambdified import Lambdified, rotor_expressions
+from benchmarks.speed_tasks import COMPILED, COMPILED_TASK
 from benchmarks.speed_tasks import POINTS as BATCH
 from benchmarks.study import INPUTS, SPEEDS, lines, matrices, plan, profile
 from proprotor import sampling
+from proprotor.compiled.library import why_not
 from proprotor.model.first_order import state_matrix
 from proprotor.stability.modes import eigenvalues
 from proprotor.study.study import study
@@ -56,12 +60,14 @@ Work = Mapping[str, tuple[Callable[[], object], int]]  # and how many points or 
 
 
 class Row(NamedTuple):
-    """A line of the table: what is compared, and the ratio with what is asked of it."""
+    """A line of the table: what is compared, the ratio with what is asked of it, and the same of compiled functions."""
 
     what: str
     found: float
     asked: float
     unit: str = ""
+    compiled: float = np.nan
+    asked_compiled: float = np.nan
 
 
 def processor_time(work: Callable[[], object]) -> float:
@@ -95,35 +101,43 @@ def beside_lapack(case: pp.Case, points: int, rounds: int) -> list[Row]:
         {name: limits for name, limits in INPUTS.items() if name != "airspeed"}, DESIGNS, seed=1
     )
 
-    def studied(inputs: tuple[Any, ...], *more: str) -> Callable[[], object]:
-        return lambda: study(
-            case, *inputs, quantities=(*DEFAULT_QUANTITIES, *more), workers=1, progress=False
-        )
+    def tasks(backend: str) -> Work:
+        def studied(inputs: tuple[Any, ...], *more: str) -> Callable[[], object]:
+            quantities = (*DEFAULT_QUANTITIES, *more)
+            return lambda: study(case, *inputs, quantities=quantities, **settings)
 
-    times = rounds_of(
-        {
-            "e": (lambda: np.linalg.eigvals(matrix), points),
-            "eig": (lambda: np.linalg.eig(matrix), points),
-            "eig of lines": (lambda: np.linalg.eig(along), len(along)),
+        options = {"backend": backend}
+        settings = options | {"workers": 1, "progress": False}
+        alone, hundred = (partial(case.linearize, speed, **options) for speed in (150.0, HUNDRED))
+        return {
             "study": (studied((plan(points),)), points),
             "with vectors": (studied((plan(points),), "vectors"), points),
             "followed": (studied(lines(points), "vectors", "modes"), len(along)),
-            "one point": (lambda: [state_matrix(case.linearize(150.0)) for _ in range(20)], 20),
-            "hundred": (lambda: eigenvalues(case.linearize(HUNDRED)), len(HUNDRED)),
-            "flutter": (
-                lambda: study(case, designs, SPEEDS, "flutter", workers=1, progress=False),
-                DESIGNS,
-            ),
-        },
-        rounds,
-    )
+            "one point": (lambda: [state_matrix(alone()) for _ in range(20)], 20),
+            "hundred": (lambda: eigenvalues(hundred()), len(HUNDRED)),
+            "flutter": (lambda: study(case, designs, SPEEDS, "flutter", **settings), DESIGNS),
+        }
+
+    backends = ("numpy",) if why_not() else ("numpy", "compiled")
+    lapack: Work = {
+        "e": (lambda: np.linalg.eigvals(matrix), points),
+        "eig": (lambda: np.linalg.eig(matrix), points),
+        "eig of lines": (lambda: np.linalg.eig(along), len(along)),
+    }
+    ours = {f"{name}, {backend}": task for backend in backends for name, task in tasks(backend).items()}
+    times = rounds_of({**lapack, **ours}, rounds)
+
+    def row(what: str, name: str, beside: str, asked: float, compiled: float = np.nan, unit: str = "") -> Row:
+        found = [ratio(times, f"{name}, {backend}", beside) for backend in backends]
+        return Row(what, found[0], asked, unit, *found[1:] or [np.nan], compiled)
+
     return [
-        Row(f"study of {points} points / eigvals", ratio(times, "study", "e"), 1.40),
-        Row("with vectors / eig", ratio(times, "with vectors", "eig"), 1.40),
-        Row("with vectors and modes followed / eig", ratio(times, "followed", "eig of lines"), 1.75),
-        Row("one point to the state matrix", ratio(times, "one point", "e"), 8, "e"),
-        Row("100 points with eigvals, a point", ratio(times, "hundred", "e"), 1.9, "e"),
-        Row(f"flutter speed of a design, {len(SPEEDS)} speeds", ratio(times, "flutter", "e"), 40, "e"),
+        row(f"study of {points} points / eigvals", "study", "e", 1.40, 0.30),
+        row("with vectors / eig", "with vectors", "eig", 1.40, 0.50),
+        row("with vectors and modes followed / eig", "followed", "eig of lines", 1.75),
+        row("one point to the state matrix", "one point", "e", 8, 2.5, "e"),
+        row("100 points with eigvals, a point", "hundred", "e", 1.9, 0.3, "e"),
+        row(f"flutter speed of a design, {len(SPEEDS)} speeds", "flutter", "e", 40, 6, "e"),
     ]
 
 
@@ -207,25 +221,31 @@ class Version:
 
 
 AGAINST = {
-    "flutter_point": ("flutter_point, 71 airspeeds / earlier", 0.40),
-    "sweep": ("sweep of 71 airspeeds / earlier", 0.45),
-    "one point": ("one point to the state matrix / earlier", 1.0),
-    "reactionless": ("eight blades with reactionless coordinates, eigenvalues / earlier", 0.4),
-    "command": (f"proprotor {' '.join(COMMAND)}, processor time / earlier", 0.55),
+    "flutter_point": ("flutter_point, 71 airspeeds / earlier", 0.40, 0.25),
+    "sweep": ("sweep of 71 airspeeds / earlier", 0.45, 0.30),
+    "one point": ("one point to the state matrix / earlier", 1.0, np.nan),
+    "reactionless": ("eight blades with reactionless coordinates, eigenvalues / earlier", 0.4, np.nan),
+    "command": (f"proprotor {' '.join(COMMAND)}, processor time / earlier", 0.55, np.nan),
 }
 
 
 def beside_earlier(baseline: Path, rounds: int) -> list[Row]:
     """Tasks of this version by those of an earlier one."""
     versions = Version(ROOT), Version(baseline)
-    found: dict[str, list[float]] = {name: [] for name in AGAINST}
+    found: dict[str, list[float]] = {name: [] for name in (*AGAINST, *COMPILED)}
     for _ in range(rounds + 1):
         for name in AGAINST:
             ours, theirs = (one.command() if name == "command" else one.ask(name) for one in versions)
             found[name].append(ours / theirs)
+            if not why_not() and (compiled := COMPILED_TASK.format(name)) in COMPILED:
+                found[compiled].append(versions[0].ask(compiled) / theirs)
     for one in versions:
         one.end()
-    return [Row(what, float(np.median(found[name][1:])), asked) for name, (what, asked) in AGAINST.items()]
+    middle = {name: float(np.median(ratios[1:])) if ratios else np.nan for name, ratios in found.items()}
+    return [
+        Row(what, middle[name], asked, "", middle.get(COMPILED_TASK.format(name), np.nan), asked_compiled)
+        for name, (what, asked, asked_compiled) in AGAINST.items()
+    ]
 
 
 def memory(baseline: Path | None) -> list[Row]:
@@ -246,9 +266,10 @@ def memory(baseline: Path | None) -> list[Row]:
 
 
 def print_rows(console: Console, rows: list[Row]) -> None:
-    table = Table("", "found", "asked for, at most")
+    table = Table("", "found", "asked for, at most", "compiled", "asked for, at most")
     for row in rows:
-        table.add_row(row.what, f"{row.found:.3g} {row.unit}".strip(), f"{row.asked:g} {row.unit}".strip())
+        numbers = (f"{row.found:.3g}", f"{row.asked:g}", f"{row.compiled:.3g}", f"{row.asked_compiled:g}")
+        table.add_row(row.what, *("" if one == "nan" else f"{one} {row.unit}".strip() for one in numbers))
     console.print(table)
 
 

@@ -21,6 +21,10 @@ from proprotor.stability.modes import eigenvalues
 
 KNOT = 1852 / 3600
 SCAN = np.linspace(50, 400, 71) * KNOT  # m/s
+COMPILED_TASK = "{}, compiled"
+COMPILED = tuple(
+    map(COMPILED_TASK.format, ("flutter_point", "sweep", "one point"))
+)  # an earlier version has none
 POINTS = 2000  # of a batch: as many as a study analyses at once
 
 
@@ -31,7 +35,12 @@ def tasks() -> dict[str, Callable[[], object]]:
     batch = np.linspace(160, 380, POINTS) * KNOT
 
     reactionless = eight.linearize(np.linspace(160, 380, 50) * KNOT, reactionless=True)
+    compiled = {"backend": "compiled"}
+    flutter, sweep, one = COMPILED
     return {
+        flutter: lambda: case.flutter_point(SCAN, **compiled),
+        sweep: lambda: case.sweep(SCAN, **compiled),
+        one: lambda: state_matrix(case.linearize(150.0, **compiled)),
         "flutter_point": lambda: case.flutter_point(SCAN),
         "sweep": lambda: case.sweep(SCAN),
         "one point": lambda: state_matrix(case.linearize(150.0)),

@@ -23,7 +23,7 @@ import jinja2
 import sympy as sp
 from sympy.printing.numpy import NumPyPrinter
 
-from derive import coordinates, multiblade
+from derive import c_code, coordinates, multiblade
 from derive.coordinates import PARTNER, SAME_TURN
 from derive.equations import REDUCED_MODULES, STEPS, consistent_functions, reduced_functions
 from derive.files import write_whole
@@ -305,6 +305,7 @@ _FUSED = {
     "general": ("Rotors with linkages and drive train as plans of few operations", ON_AXIS),
     "offset": ("Rotors with something beside the pitch axis as plans of few operations", ALL_ROTORS),
 }
+_IN_C = ("plain", "general")
 
 
 def render_fused(module: str) -> str:
@@ -319,9 +320,11 @@ def render_fused(module: str) -> str:
     taken = [one for found in shared.values() for one in found]
     given = {
         "title": title,
+        "module": module,
         "functions": [_describe_fused(function) for function in functions if function not in taken],
         "shared": {earlier: _names_of(found) for earlier, found in shared.items()},
         "names": _names_of(functions),
+        "quantities": [quantity["name"] for quantity in c_code.places(functions)] if module in _IN_C else [],
         "takes_array": any(function.into for function in functions if function not in taken),
         "absent": [symbol.name for symbol in QUANTITIES if symbol in rotors.absent - OFFSETS],
     }
@@ -336,6 +339,19 @@ def _names_of(functions: list[FusedFunction]) -> list[str]:
 @functools.cache
 def _fused_functions(rotors: Catalogue) -> list[FusedFunction]:
     return [*functions_of_rotor(rotors), *functions_of_trim(rotors)]
+
+
+def render_c(module: str) -> str:
+    """Text of a header of C with the plans of a module."""
+    title, rotors = _FUSED[module]
+    functions = _fused_functions(rotors)
+    given = {
+        "title": title,
+        "module": module,
+        "quantities": c_code.places(functions),
+        "functions": [c_code.described(function) for function in functions],
+    }
+    return _environment().get_template("plans.h.jinja").render(**given, **_header())
 
 
 def _rendered(template: str, name: str, **given: Any) -> str:
@@ -455,6 +471,9 @@ def render() -> Iterator[tuple[str, str]]:
         yield f"published/{module}.py", render_module(reduced_functions(module), title)
     for module in _FUSED:
         yield f"fused/{module}.py", render_fused(module)
+    for module in _IN_C:
+        yield f"fused/{module}.h", render_c(module)
+    yield "fused/lanes.h", _environment().get_template("lanes.h.jinja").render(**_header())
     yield "fused/__init__.py", _rendered("fused_package.py.jinja", "__init__.py")
     yield "__init__.py", _rendered("package.py.jinja", "__init__.py", modules=list(STEPS))
     terms = [{"name": n, **vars(term)} for n, term in DROPPED_TERMS.items()]
@@ -464,7 +483,7 @@ def render() -> Iterator[tuple[str, str]]:
 
 def derive_files(progress: Progress = print) -> dict[str, str]:
     """All generated files, with a progress line per step."""
-    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + 5
+    files, total = {}, len(STEPS) + len(REDUCED_MODULES) + len(_FUSED) + len(_IN_C) + 4
     start = time.perf_counter()
     for count, (name, text) in enumerate(render(), start=1):
         files[name] = text

@@ -21,7 +21,7 @@ from typing import NamedTuple
 SOURCE = Path(__file__).parents[1] / "src" / "proprotor"
 # From the ground up to the workbench: data flow from the first to the last.
 ROOMS = (
-    "errors", "typing", "needs", "units", "datum", "files", "records", "nastran",
+    "errors", "typing", "needs", "units", "datum", "files", "compiled", "records", "nastran",
     "rotor", "support", "control", "model",
     "deck", "stability", "responses", "case", "study", "exchange", "tables", "calibration",
     "plots", "report", "explore", "commands",

@@ -1,6 +1,7 @@
 """The wheels and source distributions of both packages, made and used without the repository."""
 
 import os
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -35,9 +36,15 @@ NEEDED_OF_SOURCE = (
 NEEDED_OF_WHEEL = (
     "proprotor/deck/decks/xv15.toml",
     "proprotor/commands/main.py",
+    "proprotor/compiled/eigenvalues.c",
     "proprotor/py.typed",
 )
-NEEDED_OF_EQUATIONS = ("proprotor_equations/__init__.py", "proprotor_equations/published/__init__.py")
+NEEDED_OF_EQUATIONS = (
+    "proprotor_equations/__init__.py",
+    "proprotor_equations/fused/plain.h",
+    "proprotor_equations/published/__init__.py",
+)
+SOURCES = {"proprotor": ROOT / "src", "proprotor_equations": ROOT / "generated"}
 ONLY_IN_A_CLONE = ("figures", "audit")  # once commands of the package
 LOCAL = (".venv", ".git/", ".ci", "__pycache__", ".hypothesis")  # what belongs to one machine
 
@@ -84,10 +91,43 @@ def test_a_wheel_has_its_package_and_nothing_else(built, package, needed):
     (wheel,) = built.glob(f"{package}-*.whl")
     names = zipfile.ZipFile(wheel).namelist()
     assert set(needed) <= set(names)
+    assert sources_in_c(SOURCES[package]) == {name for name in names if name.endswith((".c", ".h"))}
     tops = {name.partition("/")[0] for name in names}
     assert {top for top in tops if not top.endswith(".dist-info")} == {package}
     assert any(name.endswith("licenses/LICENSE") for name in names)
     assert not [name for name in names if any(part in name for part in ONLY_IN_A_CLONE)]
+
+
+def sources_in_c(folder):
+    """Files of C below a folder, by their path in it."""
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*.[ch]")}
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="there is no C compiler")
+@pytest.mark.parametrize("plans", ["plain", "general"])
+def test_the_headers_of_the_equations_compile_alone(built, tmp_path, plans):
+    (wheel,) = built.glob("proprotor_equations-*.whl")
+    zipfile.ZipFile(wheel).extractall(tmp_path)
+    source = tmp_path / "own.c"
+    source.write_text(f'#include "{plans}.h"\nint count(void) {{ return QUANTITIES; }}\n', encoding="utf-8")
+    folder = tmp_path / "proprotor_equations" / "fused"
+    command = ["cc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{folder}", source]
+    subprocess.run(command, check=True)
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="there is no C compiler")
+def test_the_wheels_compute_with_a_compiler_and_without(python, tmp_path):
+    """The same flutter speed; without a compiler the option `auto` takes NumPy."""
+    code = (
+        "import proprotor as pp; case = pp.load_case('xv15');"
+        "print(case.linearize(100.0, backend='auto').origin.options.backend);"
+        "print(case.flutter_point('250:350:10kt', backend='auto').speed)"
+    )
+    cache = {"PROPROTOR_CACHE": str(tmp_path / "cache")}
+    compiled, speed = run(python, tmp_path, "python", "-c", code, **cache).splitlines()
+    numpy, other = run(python, tmp_path, "python", "-c", code, **cache, PATH="", CC="").splitlines()
+    assert (compiled, numpy) == ("compiled", "numpy")
+    assert abs(float(speed) - float(other)) < 1e-9
 
 
 EQUATIONS_ALONE = """
@@ -144,11 +184,12 @@ def test_every_command_runs_without_an_extra_or_says_which_it_needs(python, tmp_
     assert done.returncode == 0, done.stderr
 
 
-def run(python, folder, *arguments):
+def run(python, folder, *arguments, **environment):
     """Output of a command of the new environment, run where there is nothing."""
     done = subprocess.run(
         [python.parent / arguments[0], *arguments[1:]],
         cwd=folder,
+        env=os.environ | environment,
         capture_output=True,
         text=True,
         check=False,

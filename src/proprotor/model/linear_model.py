@@ -163,6 +163,11 @@ class LinearModel:
         halves = [[place for place in others if self.symmetry[place] == half] for half in HALVES]
         return [group for group in (*halves, *groups) if group]
 
+    @property
+    def is_compiled(self) -> bool:
+        """Whether compiled functions take the points of the batch."""
+        return self.origin is not None and self.origin.options.backend == "compiled"
+
     @cached_property
     def finite(self) -> Array:
         """Points (...) whose mass matrix has numbers, SI; failed points have NaN in place of these numbers."""
@@ -171,7 +176,7 @@ class LinearModel:
     @cached_property
     def massless(self) -> Array:
         """Points (...) whose mass matrix, scaled to be dimensionless, has no inverse; False at failed points."""
-        return massless(self.M)
+        return massless(self.M, self.is_compiled)
 
     @cached_property
     def azimuths(self) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from proprotor.compiled.motion import have_mass
 from proprotor.model.batches import few_at_once
 from proprotor.typing import Array
 
@@ -22,8 +23,16 @@ _NO_INERTIA = 1e13  # condition number of the scaled matrix, above which the mat
 _TAKES_PART = 0.01  # component of a unit vector
 
 
-def massless(mass: Array) -> Array:
-    """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points."""
+def massless(mass: Array, compiled: bool = False) -> Array:
+    """Return which mass matrices of a batch (..., n, n) have no inverse, (...); False at failed points.
+
+    Compiled functions may find those that have one for certain.
+    """
+    if compiled and not np.iscomplexobj(mass):
+        flat = mass.reshape(-1, *mass.shape[-2:])
+        left = ~have_mass(flat)
+        left[left] = massless(flat[left])
+        return np.asarray(left.reshape(mass.shape[:-2]))
     mass, found = np.real(mass), np.zeros(mass.shape[:-2], dtype=bool)
     for rows in few_at_once(found.shape):
         if _clearly_positive(some := mass[rows]):  # which matrices with NaN are not

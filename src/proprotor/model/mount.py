@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.compiled.motion import MOST_ROWS, on_support
 from proprotor.errors import InputError
 from proprotor.model.batches import at_rows, few_at_once, joint_shape
 from proprotor.model.linear_model import LinearModel
@@ -61,7 +62,7 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     shape = joint_shape(*(matrix.shape[:-2] for matrix in (*parts, *loads)))
     rotor_alone = broadcast(rotor_alone, shape)
     matrices: dict[str, Any] = {
-        name: _on_support(getattr(rotor_alone, name), support.hub, addition)
+        name: _on_support(getattr(rotor_alone, name), support.hub, addition, rotor_alone.is_compiled)
         for name, addition in additions.items()
     }
     if rotor_alone.B is not None:
@@ -143,8 +144,10 @@ def with_warning(trim: Trim, warning: Array | None) -> Trim:
     return replace(trim, warning=joined.reshape(trim.warning.shape))
 
 
-def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
+def _on_support(matrix: Array, hub: Array, addition: Array, compiled: bool) -> Array:
     """Return Tᵀ (...) T plus the support's matrix; T = diag(Φ, 1) does not change the rotor's own block."""
+    if compiled and _are_served(matrix, hub, addition):
+        return _compiled(matrix, hub, addition)
     modes, hubs, shape = hub.shape[-1], len(HUB), matrix.shape[:-2]
     n = modes + matrix.shape[-1] - hubs
     kind = np.result_type(matrix, hub, addition)
@@ -158,6 +161,25 @@ def _on_support(matrix: Array, hub: Array, addition: Array) -> Array:
         found[..., :modes, :modes] += added
         found[..., modes:, :] = columns[..., hubs:, :]
     return whole
+
+
+def _are_served(matrix: Array, hub: Array, addition: Array) -> bool:
+    """Return whether compiled functions put such matrices on a support: real ones of many points, with few rows."""
+    few = hub.shape[-1] + matrix.shape[-1] - len(HUB) <= MOST_ROWS
+    return few and matrix.ndim > 2 and not any(map(np.iscomplexobj, (matrix, hub, addition)))
+
+
+def _compiled(matrix: Array, hub: Array, addition: Array) -> Array:
+    """Return the same as `_on_support` by compiled functions."""
+    shape = matrix.shape[:-2]
+    of_support = (
+        part
+        if part.ndim == 2
+        else np.broadcast_to(part, (*shape, *part.shape[-2:])).reshape(-1, *part.shape[-2:])
+        for part in (hub, addition)
+    )
+    found = on_support(matrix.reshape(-1, *matrix.shape[-2:]), *of_support)
+    return found.reshape(*shape, *found.shape[-2:])
 
 
 def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:

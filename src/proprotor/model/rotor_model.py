@@ -277,7 +277,12 @@ def _matrices(
             blade = evaluate(whole_rotor.blade_matrices, given)
         if served:
             in_air = None if options.airloads == "none" else segments
-            found = fused.rotor_matrices(quantities, in_air, len(rows), one)
+            compiled = (
+                options.backend == "compiled"
+                and not one
+                and not any(map(np.iscomplexobj, quantities.values()))
+            )
+            found = fused.rotor_matrices(quantities, in_air, len(rows), one, compiled)
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
         late = None

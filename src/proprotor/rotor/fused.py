@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from proprotor_equations.fused import plain
 
+from proprotor.compiled import plans as compiled_plans
 from proprotor.rotor.generated import EQUATION_SETS, EquationSet, evaluate, keywords
 from proprotor.rotor.section_loads import LOAD_MOMENTS
 from proprotor.typing import Array
@@ -49,6 +50,11 @@ def plans_of(quantities: Quantities) -> ModuleType:
         if not (isinstance(value, float | int) and value == 0):
             return _general()
     return _PLAIN
+
+
+def have_c(plans: ModuleType) -> bool:
+    """Return whether there are the same plans in C: those for rotors with something beside the pitch axis have none."""
+    return hasattr(plans, "QUANTITIES")
 
 
 _PLAIN: ModuleType = plain
@@ -95,7 +101,11 @@ def trim_integrals(quantities: Quantities) -> dict[str, Any]:
 
 
 def rotor_matrices(
-    quantities: Quantities, segments: Quantities | None, points: int, one: bool = False
+    quantities: Quantities,
+    segments: Quantities | None,
+    points: int,
+    one: bool = False,
+    compiled: bool = False,
 ) -> Matrices:
     """Return M, C, K (points, 18, 18) and B (points, 18, 6) of a rotor.
 
@@ -113,6 +123,9 @@ def rotor_matrices(
     plans = plans_of(quantities)
     blade = {name: quantities[name] for name in _names(plans, segments is not None) if name in quantities}
     along = None if segments is None else {name: segments[name] for name in of_segments(plans)}
+    if compiled and have_c(plans):
+        shapes = {name: places.shape for name, places in _layout(plans, "in_vacuum").places.items()}
+        return compiled_plans.matrices_of_rotor(plans, points, blade, along, shapes)
     return _one_point(plans, blade, along) if one else _batch(plans, blade, along, points)
 
 

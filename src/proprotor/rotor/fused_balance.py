@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from proprotor.compiled import plans as compiled_plans
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import Layout, pool_of, values_of
 from proprotor.rotor.generated import evaluate
@@ -95,6 +96,7 @@ def balanced(
     compressibility: bool,
     room: Room,
     doubts: dict[str, Array] | None = None,
+    compiled: bool = False,
 ) -> _Balanced:
     """Return the balance of a blade at trim states.
 
@@ -111,6 +113,8 @@ def balanced(
         Filled with the reasons to doubt the airfoil's coefficients outboard, masks (n,) by reason.
     """
     points = len(quantities["coning"])
+    if compiled and sections.quadrature.counts.ndim == 1:
+        return _compiled(plans, sections, quantities, compressibility, doubts)
     blade = dict(quantities) | {name: side[:, None] for name, side in sections.sides.items()}
     line = evaluate(plans.line, blade, np.cos, np.sin)
     air = _air(sections, blade | dict(zip(plans.LINE, line, strict=True)), compressibility)
@@ -121,6 +125,48 @@ def balanced(
     work = _matrices(plans, "work", of_loads, shape)
     residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
     return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], moments)
+
+
+def compiled_blades(
+    sections: BladeSections, quantities: _Quantities, compressibility: bool
+) -> compiled_plans.Blades:
+    """Return blades at many points for the compiled plans."""
+    quadrature, airfoil, along = sections.quadrature, vars(sections.airfoil), sections.along
+    met = quantities if compressibility else dict(quantities) | {"speed_of_sound": np.inf}
+    names = ("lift_slope", "zero_lift_angle", "drag", "moment")
+    own = {"radius": quadrature.stations, "chord": along.chord, "twist": along.twist}
+    own |= {"square_ratio": along.square, "cube_ratio": along.cube} | {name: airfoil[name] for name in names}
+    ends = [0, *(one.stop for one in quadrature.slices)]
+    return compiled_plans.Blades(met, sections.sides, ends, own, quadrature.weights)
+
+
+def _compiled(
+    plans: ModuleType,
+    sections: BladeSections,
+    quantities: _Quantities,
+    compressibility: bool,
+    doubts: dict[str, Array] | None,
+) -> _Balanced:
+    """Return the balance by the compiled plans."""
+    points = len(quantities["coning"])
+    blades = compiled_blades(sections, quantities, compressibility)
+    found = compiled_plans.balance_of_blade(plans, points, blades, doubts is not None)
+    if doubts is not None and found.doubts is not None:
+        angle, mach = found.doubts
+        mark_doubts(doubts, sections, quantities["radius"], (angle, mach), slice(0, points), points)
+    parts = {"balance": found.structure, "work": found.work}
+    structure, work = (_at_places(plans, name, results) for name, results in parts.items())
+    residual, virtual = structure["residual"][..., 0], work["work"][..., 0]
+    return _Balanced(residual, structure["slopes"], virtual, work["work_slopes"], found.moments)
+
+
+def _at_places(plans: ModuleType, plan: str, results: Array) -> dict[str, Array]:
+    """Return the matrices (n, rows, columns) of a plan from its results (n, results)."""
+    layout = _layouts(plans)[plan]
+    whole = np.empty((len(results), 1 + results.shape[1] + len(layout.opposite)))
+    whole[:, 0], whole[:, 1 : 1 + results.shape[1]] = 0.0, results
+    np.negative(results[:, np.array(layout.opposite, dtype=int) - 1], out=whole[:, 1 + results.shape[1] :])
+    return {name: np.take(whole, places, axis=1) for name, places in layout.places.items()}
 
 
 def segments_of(plans: ModuleType, moments: Array, sections: BladeSections) -> dict[str, Any]:

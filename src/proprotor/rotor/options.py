@@ -31,6 +31,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
     "cyclic": ("none", "level"),
+    "backend": ("numpy", "compiled", "auto"),
 }
 _FURTHER = (
     *("locked", "frequencies", "pitch_flap_coupling", "pitch_lag_coupling", "drive_train"),
@@ -96,6 +97,10 @@ class Options:
     cyclic : "none" or "level"
         With a shaft angle or a load factor: a swashplate without cyclic pitch, or the cyclic pitch that keeps the
         gimbal level; without a gimbal, the pitch that keeps the blades from flapping once a turn.
+    backend : "numpy", "compiled" or "auto"
+        What solves the eigenvalue problems: NumPy with LAPACK, or compiled functions for whole batches (see
+        `proprotor.compiled`), to rounding the same. "auto" takes these where there is a C compiler, and results say
+        which of both it took.
     locked : collection of "flap", "lag", "pitch", "gimbal"
         Coordinates that are removed; they stay at zero in the trim too.
 
@@ -121,6 +126,7 @@ class Options:
     shaft_angle: ArrayLike = 0.0
     load_factor: ArrayLike = 1.0
     cyclic: str = "none"
+    backend: str = "numpy"
     locked: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -130,6 +136,8 @@ class Options:
                 raise InputError(name, value, f"must be one of {', '.join(map(str, choices))}")
         if self.section_damping is None:
             object.__setattr__(self, "section_damping", default_choice("section_damping", vars(self)))
+        if self.backend != "numpy":
+            object.__setattr__(self, "backend", _backend(self.backend))
         locked = (self.locked,) if isinstance(self.locked, str) else tuple(self.locked)
         for name in locked:
             if name not in LOCKABLE:
@@ -226,6 +234,18 @@ class Options:
     def pitch_is_free(self) -> bool:
         """Whether the pitch equations are part of the model."""
         return self.pitch == "dynamic" and "pitch" not in self.locked
+
+
+def _backend(wanted: str) -> str:
+    """Return the backend that is there: "auto" stands for the compiled one, or for NumPy without a compiler."""
+    from proprotor.compiled.library import why_not  # here, because most results need no compiler
+
+    reason = why_not()
+    if reason and wanted == "compiled":
+        raise InputError(
+            "backend", wanted, f'needs the compiled functions: {reason}; "auto" takes NumPy then'
+        )
+    return "numpy" if reason else "compiled"
 
 
 def parse_options(options: Mapping[str, Any]) -> Options:

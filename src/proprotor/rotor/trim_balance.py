@@ -16,7 +16,7 @@ from proprotor_equations import airloads
 from proprotor_equations import trim as equations
 
 from proprotor.rotor.elimination import solve
-from proprotor.rotor.fused import plans_of
+from proprotor.rotor.fused import have_c, plans_of
 from proprotor.rotor.fused_balance import Room, balanced, segments_of, serves_sections
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.offset_mass import OffsetMass
@@ -118,6 +118,17 @@ class Balance:
         return serves_sections(self.sections) and self.options.frequencies is None
 
     @functools.cached_property
+    def compiled(self) -> bool:
+        """Whether compiled functions evaluate the plans: for real numbers, not for derivatives by a complex step."""
+        numbers = (*self.quantities.values(), *vars(self.sections.airfoil).values())
+        return (
+            self.options.backend == "compiled"
+            and have_c(self.plans)
+            and not self.sections.is_complex
+            and not any(map(np.iscomplexobj, numbers))
+        )
+
+    @functools.cached_property
     def plans(self) -> ModuleType:
         """The fused functions for this rotor."""
         return plans_of(self.quantities)
@@ -152,11 +163,17 @@ class Balance:
         doubts: dict[str, Array] | None = None,
     ) -> Linear:
         """Return residual and slopes at a state and a share of the precone, with the quantities behind both."""
-        quantities = self._at(state, rows, share)
+        quantities = self.at(state, rows, share)
         if self.fused:
-            sections = self._sections(rows)
+            sections = self.sections_at(rows)
             found = balanced(
-                self.plans, sections, quantities, self.options.compressibility, self.room, doubts
+                self.plans,
+                sections,
+                quantities,
+                self.options.compressibility,
+                self.room,
+                doubts,
+                self.compiled,
             )
             residual, structure, work, of_airloads, moments = found
             residual -= work
@@ -176,7 +193,7 @@ class Balance:
 
     def left(self, state: State, rows: Array, share: float | None = None) -> Array:
         """Return the residual (n, k) with all of the airloads, without slopes."""
-        quantities = self._at(state, rows, share)
+        quantities = self.at(state, rows, share)
         work = self._work(self._loads(quantities, rows, steady_only=True))
         residual = _residual(quantities) - work
         return self._to_target(residual, rows)[:, self.rows]
@@ -212,7 +229,7 @@ class Balance:
         places = slopes.shape[-1] * rows[:, None] + columns
         return np.asarray(np.take(slopes.reshape(*slopes.shape[:-2], -1), places, axis=-1))
 
-    def _at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
+    def at(self, state: State, rows: Array, share: Array | float | None = None) -> dict[str, Any]:
         """Return the quantities of the whole blade at a state and at a share of its precone."""
         given = dict(self.quantities) if self._is_all(rows) else take(self.quantities, rows)
         if share is not None:
@@ -220,7 +237,7 @@ class Balance:
             given |= _at_share(given, share)
         return with_trim(given, self.options, take(state, rows))
 
-    def _sections(self, rows: Array) -> BladeSections:
+    def sections_at(self, rows: Array) -> BladeSections:
         """Return the sections at some of the points."""
         return self.sections if self._is_all(rows) else self.sections.take(rows)
 
@@ -230,7 +247,7 @@ class Balance:
 
     def _loads(self, quantities: Mapping[str, Any], rows: Array, **wanted: Any) -> dict[str, Any]:
         """Return the quantities of each segment and the radial moments of the section loads."""
-        sections = self._sections(rows)
+        sections = self.sections_at(rows)
         segments = segment_quantities(sections, quantities)
         return segments | load_moments(
             sections, segments, compressibility=self.options.compressibility, **wanted

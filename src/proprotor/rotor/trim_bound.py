@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from proprotor.compiled import bounds
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.elimination import eliminate, points_last, solve
 from proprotor.rotor.trim import UNKNOWNS
@@ -84,8 +85,17 @@ def contraction(
     return _by_angles_or_moments(sprung, radius, *slopes, enough=enough)
 
 
-def near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
+def near_each_other(balance: Balance, found: Slopes, expected: Slopes) -> Array:
     """Return whether slopes at all of the loads are so near the expected ones that one equilibrium has both."""
+    if not balance.compiled:
+        return _near_each_other(balance.sprung, found, expected)
+    near = bounds.near_each_other(found.full, expected.full)
+    left = np.flatnonzero(~near)
+    near[left] = _near_each_other(balance.sprung, found.of(left), expected.of(left))
+    return near
+
+
+def _near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
 
     def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
         """Return the radius of the relative difference of the slopes."""
@@ -131,8 +141,12 @@ def at_end(
     half_way = {name: (start[name] + state[name]) / 2 for name in UNKNOWNS}
     between = None if smooth else balance.near(half_way, rows, share=0.5).slopes
     found = np.zeros(len(rows), dtype=bool)
-    left = np.arange(len(rows))
+    if smooth and balance.compiled:
+        found = bounds.lead_to_end(before, after)
+    left = np.flatnonzero(~found)
     for windows in _WINDOWS:
+        if not len(left):
+            break
         ends = np.zeros(len(left)), np.ones(len(left))
         middle = None if between is None else between.of(left)
         slopes = before.of(left), after.of(left)
@@ -141,8 +155,6 @@ def at_end(
         )
         found[left] = radius <= CONTRACTION
         left = left[~found[left]]
-        if not len(left):
-            break
     return found
 
 

@@ -12,14 +12,18 @@ Points whose path is lost in the first stage are followed on all stations.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from proprotor.compiled.plans import Searched
+from proprotor.rotor import trim_compiled
+from proprotor.rotor.fused_balance import segments_of
 from proprotor.rotor.options import Options
-from proprotor.rotor.section_loads import BladeSections
+from proprotor.rotor.section_loads import BladeSections, mark_doubts
 from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim, has_offset_mass
 from proprotor.rotor.trim_balance import Balance, Linear, Slopes, State, copy_state, is_last, newton_step
 from proprotor.rotor.trim_bound import at_end, near_each_other
@@ -55,6 +59,18 @@ class _Loads(NamedTuple):
         """Return the loads of a step from the balance before it."""
         work = here.work + (here.work_slopes @ step[..., None])[..., 0]
         return cls(work, here, here.along(), doubts)
+
+    @classmethod
+    def compiled(cls, balance: Balance, before: State, rows: Array, found: Searched) -> _Loads:
+        """Return the loads of the last step of some points by the compiled functions."""
+        quantities, sections = balance.at(before, rows), balance.sections_at(rows)
+        along = functools.partial(segments_of, balance.plans, found.moments[..., rows], sections)
+        none = np.zeros((len(rows), 0))
+        here = Linear(none, Slopes(*found.last).of(rows), found.work[rows], none, quantities, along)
+        doubts: dict[str, Array] = {}
+        air = (found.doubts[0, rows], found.doubts[1, rows])
+        mark_doubts(doubts, sections, quantities["radius"], air, slice(0, len(rows)), len(rows))
+        return cls(here.work, here, here.along(), doubts)
 
     def put(self, places: Array, others: _Loads, inputs: Mapping[str, Any]) -> None:
         """Set the loads of some of the points to those of a later step; inputs are the same before each step."""
@@ -167,7 +183,23 @@ class _Search:
 
     def come_near(self, few: Balance) -> None:
         """Run Newton with all loads at once, and follow the path of points that may have missed it."""
-        rows, k = self.rows, len(few.free)
+        rows = self.rows
+        near, first, last = (
+            self._compiled_near(few, rows) if trim_compiled.serves(few) else self._near(few, rows)
+        )
+        arrived = np.flatnonzero(near)
+        copy_state(self.start, rows[~near[rows]], onto=self.state)
+        known = ~self.followed[arrived]
+        known |= at_end(few, first.of(arrived), last.of(arrived), self.start, self.state, arrived)
+        self.ends.put(arrived[known], last.of(arrived[known]))
+        near[arrived] = known
+        lost = rows[self.followed[rows] & ~near[rows]]
+        if len(lost):
+            self._follow(few, lost)
+
+    def _near(self, few: Balance, rows: Array) -> tuple[Array, Slopes, Slopes]:
+        """Return which points came near a trim, and the slopes of all points at the first and the last step."""
+        k = len(few.free)
         first, last = (Slopes.unknown(len(self.reason), k) for _ in range(2))
         active, near = rows, np.zeros(len(self.reason), dtype=bool)
         before = np.full(len(self.reason), np.inf)
@@ -187,15 +219,14 @@ class _Search:
             before[active] = size
             near[active] = arrived
             active = active[~arrived & ~np.isnan(size)]
-        arrived = np.flatnonzero(near)
-        copy_state(self.start, rows[~near[rows]], onto=self.state)
-        known = ~self.followed[arrived]
-        known |= at_end(few, first.of(arrived), last.of(arrived), self.start, self.state, arrived)
-        self.ends.put(arrived[known], last.of(arrived[known]))
-        near[arrived] = known
-        lost = rows[self.followed[rows] & ~near[rows]]
-        if len(lost):
-            self._follow(few, lost)
+        return near, first, last
+
+    def _compiled_near(self, few: Balance, rows: Array) -> tuple[Array, Slopes, Slopes]:
+        """Return the same by the compiled functions."""
+        found = trim_compiled.searched(
+            few, self.state, rows, self.iterations, _ITERATIONS // 2, come_near=True
+        )
+        return found.arrived, Slopes(*found.first), Slopes(*found.last)
 
     def _follow(self, balance: Balance, rows: Array) -> Path:
         """Lead points along their path; points whose path ends before all of the loads go back to their start."""
@@ -224,6 +255,15 @@ class _Search:
 
     def _newton_steps(self, rows: Array) -> Array:
         """Run full Newton and return which points converged; points with a path must converge near its end."""
+        steps = self._compiled_steps if trim_compiled.serves(self.balance) else self._steps
+        done, found, loads = steps(rows)
+        near = near_each_other(self.balance, found.of(rows), self.ends.of(rows))
+        done[rows] &= ~self.followed[rows] | near
+        self.last = loads if done[rows].all() else None
+        return done
+
+    def _steps(self, rows: Array) -> tuple[Array, Slopes, _Loads | None]:
+        """Return which points converged, the slopes of all points at the last step, and its loads."""
         active, done = rows, np.zeros(len(self.reason), dtype=bool)
         size_before = np.full(len(self.reason), np.inf)
         found = Slopes.unknown(len(self.reason), len(self.balance.free))
@@ -249,10 +289,18 @@ class _Search:
             self.iterations[active] += 1
             done[active] = small
             active = active[~small & ~np.isnan(size)]
-        near = near_each_other(self.balance.sprung, found.of(rows), self.ends.of(rows))
-        done[rows] &= ~self.followed[rows] | near
-        self.last = loads if done[rows].all() else None
-        return done
+        return done, found, loads
+
+    def _compiled_steps(self, rows: Array) -> tuple[Array, Slopes, _Loads | None]:
+        """Return the same by the compiled functions."""
+        balance = self.balance
+        found = trim_compiled.searched(
+            balance, self.state, rows, self.iterations, _ITERATIONS, come_near=False
+        )
+        for name, values in zip(UNKNOWNS, found.before, strict=True):
+            self.before[name][rows] = values[rows]
+        done, slopes = found.arrived, Slopes(*found.last)
+        return done, slopes, _Loads.compiled(balance, self.before, rows, found) if len(rows) else None
 
 
 def _newton(

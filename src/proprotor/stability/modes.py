@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from proprotor.compiled import eigenvalues as compiled_eigenvalues
 from proprotor.model import stamp
 from proprotor.model.batches import few_at_once
 from proprotor.model.first_order import (
@@ -84,12 +85,18 @@ def eigenvalues(model: LinearModel) -> Array:
 
 def _eigenvalues(model: LinearModel) -> Array:
     """Return the eigenvalues (..., states) of points with the same states, whose coordinates may all couple."""
+    found = _compiled_roots(model) if model.is_compiled else _roots(model)
+    if (noise := _pairs_of_noise(found)).any():
+        found[noise] = 0
+    return found
+
+
+def _roots(model: LinearModel) -> Array:
+    """Return eigenvalues by LAPACK."""
     states = len(held_coordinates(model)) + len(model.dofs)
     found = np.empty((*model.M.shape[:-2], states), dtype=complex)
     for rows in few_at_once(model.M.shape[:-2]):  # the matrices of all points would not stay in the cache
         found[rows] = np.linalg.eigvals(first_order_at(model, rows))
-    if (noise := _pairs_of_noise(found)).any():
-        found[noise] = 0
     return found
 
 
@@ -111,12 +118,12 @@ def _by_block(model: LinearModel) -> Spectrum:
     held = held_coordinates(model)
     places = blocks(model, held)
     if len(places) == 1:
-        return Spectrum(*_solved(first_order(model)), model.shapes, tuple(held), places)
+        return Spectrum(*_solved(model), model.shapes, tuple(held), places)
     states = len(held) + len(model.dofs)
     values = np.empty((*model.M.shape[:-2], states), dtype=complex)
     right = np.zeros((*values.shape, states), dtype=complex)
     for (rows, columns), own in zip(places, model.blocks, strict=True):
-        values[..., columns], right[..., rows, columns] = _solved(first_order(_of_block(model, own)))
+        values[..., columns], right[..., rows, columns] = _solved(_of_block(model, own))
     return Spectrum(values, right, model.shapes, tuple(held), places)
 
 
@@ -169,9 +176,37 @@ def with_azimuths(spectrum: Spectrum, model: LinearModel, states: int) -> Spectr
     return Spectrum(found, whole, spectrum.shapes, tuple(held), later)
 
 
-def _solved(matrix: Array) -> tuple[Array, Array]:
+def _compiled_roots(model: LinearModel) -> Array:
+    """Return eigenvalues by the compiled functions, and by LAPACK where they hand over."""
+    found, rest = compiled_eigenvalues.roots_of_motion(*_in_one_axis(model), held_coordinates(model))
+    shape = model.M.shape[:-2]
+    found = found.reshape(*shape, -1)
+    if rest.any():
+        points = rest.reshape(shape)
+        found[points] = np.linalg.eigvals(first_order(some_points(model, points)))
+    return found
+
+
+def _in_one_axis(model: LinearModel) -> tuple[Array, Array, Array]:
+    """Return M, C and K (points, n, n)."""
+    mass, damping, stiffness = (part.reshape(-1, *part.shape[-2:]) for part in (model.M, model.C, model.K))
+    return mass, damping, stiffness
+
+
+def _compiled_modes(model: LinearModel) -> tuple[Array, Array]:
+    """Return eigenvalues and right vectors by the compiled functions, and by LAPACK where they hand over."""
+    values, right, rest = compiled_eigenvalues.modes_of_motion(*_in_one_axis(model), held_coordinates(model))
+    shape, states = model.M.shape[:-2], values.shape[-1]
+    values, right = values.reshape(*shape, states), right.reshape(*shape, states, states)
+    if rest.any():
+        points = rest.reshape(shape)
+        values[points], right[points] = np.linalg.eig(first_order(some_points(model, points)))
+    return values, right
+
+
+def _solved(model: LinearModel) -> tuple[Array, Array]:
     """Return eigenvalues and right vectors as complex numbers, also where all of them are real."""
-    values, right = np.linalg.eig(matrix)
+    values, right = _compiled_modes(model) if model.is_compiled else np.linalg.eig(first_order(model))
     values, right = values.astype(complex, copy=False), right.astype(complex, copy=False)
     if not (noise := _pairs_of_noise(values)).any():
         return values, right

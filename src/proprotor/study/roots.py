@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from proprotor.compiled import shapes
 from proprotor.model.first_order import held_coordinates
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.matching import Spectrum
@@ -30,14 +31,17 @@ def vectors(model: LinearModel, spectrum: Spectrum) -> Array:
     n, states = len(model.dofs), values.shape[-1]
     held = held_coordinates(model, states)
     flat, columns = values.reshape(-1, states), right.reshape(-1, states, states)
+    if model.is_compiled:
+        motions = shapes.coordinate_motions(n, held, flat, columns, by_frequency(flat))
+        return motions.reshape(*values.shape[:-1], n, states)
     found = np.empty((len(flat), n, states), dtype=complex)
     for start in range(0, len(flat), _BLOCK):
         rows = slice(start, start + _BLOCK)
-        shapes = coordinate_motion(held, n, flat[rows], columns[rows])
+        motions = coordinate_motion(held, n, flat[rows], columns[rows])
         if (missing := np.isnan(flat[rows])).any():
-            shapes = np.where(missing[:, None, :], np.nan, shapes)
-        _make_largest_one(shapes)
-        found[rows] = np.take_along_axis(shapes, by_frequency(flat[rows])[:, None, :], -1)
+            motions = np.where(missing[:, None, :], np.nan, motions)
+        _make_largest_one(motions)
+        found[rows] = np.take_along_axis(motions, by_frequency(flat[rows])[:, None, :], -1)
     return found.reshape(*values.shape[:-1], n, states)
 
 

@@ -1,0 +1,42 @@
+"""Numbers of many points in memory, as the compiled functions find them: see columns.h."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+import numpy as np
+
+from proprotor.typing import Array
+
+_WIDEST = 64  # bytes of a vector register
+
+
+class Column(ctypes.Structure):
+    """Where numbers begin, and how many places lie between those of two points and of two stations."""
+
+    _fields_ = (("at", ctypes.c_void_p), ("point", ctypes.c_ssize_t), ("along", ctypes.c_ssize_t))
+
+
+def column(value: Any, kept: list[Array]) -> Column:
+    """Return a number, or an array (along,), (points, along) or (1, along), as a column; `kept` keeps it in memory."""
+    array = np.asarray(value, dtype=float)
+    kept.append(array)
+    strides = [
+        stride // array.itemsize if size > 1 else 0
+        for stride, size in zip(array.strides, array.shape, strict=True)
+    ]
+    point, along = (0,) * (2 - array.ndim) + tuple(strides)
+    return Column(array.ctypes.data, point, along)
+
+
+def address(array: Array) -> Any:
+    """Return where an array begins."""
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+def lane_room(vectors: int) -> Array:
+    """Return memory for vectors of lanes, at a place where they may begin."""
+    memory = np.empty((vectors + 1) * _WIDEST, dtype=np.uint8)
+    start = -memory.ctypes.data % _WIDEST
+    return memory[start:]

@@ -1,0 +1,16 @@
+/* Equations of motion in the lanes: their mass matrix, and what stands on their right side. */
+
+#ifndef MOTION_H
+#define MOTION_H
+
+#include "lanes.h"
+
+#include <stddef.h>
+
+/* Load M, and K of the held coordinates and C beside it, row by row. */
+void load_equations(int n, int count_held, const int32_t *held, ptrdiff_t first, ptrdiff_t count, const double *const *matrices, lanes *equations);
+
+/* Solve the first n columns of n rows for the others, rows in their order; return the lanes in which this loses digits. */
+whole eliminate(int n, int columns, lanes *rows);
+
+#endif
