@@ -162,7 +162,7 @@ MALFORMED = {
         ONE + "state_space = { A = [[1, 2], [1]], B = [[1]], C = [[1]], D = [[0]] }\n",
         "control.loops[a].A = [[1, 2], [1]]: must be a matrix of real numbers",
     ),
-    "unit": (ONE + 'delay = "10 m"\n', 'control.loops[a].delay = 10 m: must be a time, such as "10 ms"'),
+    "unit": (ONE + 'delay = "10 m"\n', 'control.loops[a].delay = 10 m: must be a time, such as "0.5 s"'),
     "order": (
         ONE + 'delay = "10 ms"\ndelay_order = 12\n',
         "control.loops[a].delay_order = 12: must be a whole number",

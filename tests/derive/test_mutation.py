@@ -79,6 +79,15 @@ def test_every_generated_function_is_of_the_model(monkeypatch):
         for options in OPTIONS:
             model = pp.rotor_model(rotor, case.operation, 100.0, **options)
             assert model.trim.converged
+    masses = {entry.name: 1e-3 for entry in dataclasses.fields(pp.OffsetMass)}
+    beside = dataclasses.replace(
+        case.rotor, airfoil=airfoil, offset_mass=pp.OffsetMass(**masses), aerodynamic_center=0.01
+    )
+    for options in ({}, {"pitch": "coupling"}, {"lift": "lagged"}, {"equations": "published"}):
+        assert pp.rotor_model(beside, case.operation, [100.0, 110.0], **options).trim.converged.all()
+    angles = np.linspace(-0.6, 0.6, 25)[:, None]
+    table = pp.AirfoilTable(angles[:, 0], np.zeros(1), 5.7 * angles, 0.01 + angles**2, 0 * angles)
+    pp.rotor_model(dataclasses.replace(beside, airfoil=table), case.operation, 100.0)
     soft = dataclasses.replace(case.rotor, control_stiffness=case.rotor.control_stiffness / 50)
     pp.rotor_model(soft, case.operation, 10.0)  # a trim that starts by a search for the rigid blade's pitch
     pp.load_case("xv15-wing")
