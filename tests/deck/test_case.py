@@ -106,7 +106,14 @@ def test_a_deck_has_the_fields_of_what_it_describes():
     def names(kind) -> set[str]:
         return {entry.name for entry in fields(kind)}
 
-    instead = {"flap_frequency", "lag_frequency", "lock_number", "mass_distribution", "hub_mass", "mass_offset"}
+    instead = {
+        "flap_frequency",
+        "lag_frequency",
+        "lock_number",
+        "mass_distribution",
+        "hub_mass",
+        "mass_offset",
+    }
     beside = {"frequencies"}  # of the case, as its drive train
     made = {"offset_mass"}  # of mass_offset
     assert set(RotorSection.model_fields) - instead - beside == names(Rotor) - made

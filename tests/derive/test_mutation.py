@@ -86,7 +86,9 @@ def test_every_generated_function_is_of_the_model(monkeypatch):
     for options in ({}, {"pitch": "coupling"}, {"lift": "lagged"}, {"equations": "published"}):
         assert pp.rotor_model(beside, case.operation, [100.0, 110.0], **options).trim.converged.all()
     angles = np.linspace(-0.6, 0.6, 25)[:, None]
-    table = pp.AirfoilTable(angles[:, 0], np.zeros(1), 5.7 * angles, 0.01 + angles**2, 0 * angles)
+    table = pp.AirfoilTable(
+        alpha=angles[:, 0], mach=[0.0], lift=5.7 * angles, drag=0.01 + angles**2, moment=0 * angles
+    )
     pp.rotor_model(dataclasses.replace(beside, airfoil=table), case.operation, 100.0)
     soft = dataclasses.replace(case.rotor, control_stiffness=case.rotor.control_stiffness / 50)
     pp.rotor_model(soft, case.operation, 10.0)  # a trim that starts by a search for the rigid blade's pitch
