@@ -109,7 +109,7 @@ class Results:
 
     def _number(self, name: str, place: Place, value: sp.Expr) -> int:
         expanded = sp.expand(value.xreplace(_squares(value)))
-        if expanded == 0:
+        if expanded == 0 or _vanishes(expanded):
             return 0
         short, opposite = sp.factor_terms(expanded), sp.factor_terms(sp.expand(-expanded))
         if opposite in self._numbers:
@@ -118,6 +118,21 @@ class Results:
             self.named["_".join((name, *place))] = short
             self._numbers[short] = len(self.named)
         return self._numbers[short]
+
+
+def _vanishes(expanded: sp.Expr) -> bool:
+    """Return whether a sum is zero because the squares of a sine and its cosine, by their names, add up to one."""
+    sines = {
+        cosine: sp.Symbol(f"sin_{cosine.name.removeprefix('cos_')}", real=True)
+        for cosine in expanded.free_symbols
+        if cosine.name.startswith("cos_")
+    }
+    powers = {
+        power: power.base ** (power.exp % 2) * (1 - sines[power.base] ** 2) ** (power.exp // 2)
+        for power in expanded.atoms(sp.Pow)
+        if power.base in sines and power.exp.is_Integer and power.exp > 1
+    }
+    return bool(powers) and sp.expand(expanded.xreplace(powers)) == 0
 
 
 def _squares(value: sp.Expr) -> dict[sp.Expr, sp.Expr]:

@@ -56,7 +56,7 @@ class StraightAirfoil:
 
     lift_slope: float = 5.7
     zero_lift_angle: float = -0.02
-    drag: float = 0.012
+    drag: float = 0.05
     moment: float = -0.03
 
     def coefficients(self, alpha: Any, mach: Any) -> tuple[Any, Any, Any]:
