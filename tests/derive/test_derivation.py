@@ -45,7 +45,8 @@ HASH_SEEDS = (0, 1)
 GIGABYTE = 2**30
 
 DERIVE = """
-import pickle, resource, sys
+import pickle, re, resource, sys
+from pathlib import Path
 from derive import emit
 
 functions, render_module = [], emit.render_module
@@ -56,7 +57,10 @@ def recorded(module_functions, title, *template):
 
 emit.render_module = recorded
 files = emit.derive_files(progress=lambda line: None)
-peak = 1024 * sum(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+# On Linux a new process starts with the largest size of its parent in ru_maxrss: VmHWM is the process's own.
+status = Path("/proc/self/status")
+own = re.search(r"VmHWM:\\s+(\\d+) kB", status.read_text()) if status.exists() else None
+peak = 1024 * (int(own[1]) if own else resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 pickle.dump((files, functions, peak), sys.stdout.buffer)
 """
 

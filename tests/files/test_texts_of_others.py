@@ -73,6 +73,8 @@ OPENED = {
     "files/output.py": "what is written",
     "files/source_code.py": "this package",
     "needs.py": "files of the system",
+    "compiled/library.py": "sources of this package",
+    "compiled/single_file.py": "sources of this package",
     "study/checkpoint.py": "what a study wrote",
     "study/study.py": "the folder of a study",
     "report/typeset.py": "the layout of reports",
