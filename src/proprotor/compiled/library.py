@@ -10,10 +10,7 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import os
-import shlex
-import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -102,6 +99,8 @@ def _compiler() -> tuple[str, ...]:
     """Return the command of the C compiler: that of the variable CC, or `cc`."""
     given = os.environ.get("CC", "")
     try:
+        import shlex  # here, as what follows below: most processes compile nothing
+
         command = tuple(shlex.split(given)) or ("cc",)
     except ValueError as error:
         raise Unavailable(f"there is no C compiler: the variable CC is {given}: {error}") from None
@@ -140,6 +139,8 @@ def _sources(ending: str) -> list[Path]:
 
 def _build(compiler: tuple[str, ...], flags: tuple[str, ...], place: Path) -> None:
     """Compile the sources into the cache."""
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="proprotor-") as folder:
         built = Path(folder) / "library.so"
         sources = (f"-I{GENERATED}", f"-I{SOURCES}", "-o", str(built), *map(str, _sources("c")), "-lm")
@@ -175,6 +176,8 @@ def _output_of(command: tuple[str, ...], failure: str) -> bytes:
     Unavailable
         With the failure and the first error that the command tells, or its last line.
     """
+    import subprocess
+
     try:
         return subprocess.run(command, capture_output=True, check=True, timeout=_PATIENCE).stdout
     except subprocess.CalledProcessError as error:

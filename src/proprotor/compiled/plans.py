@@ -167,6 +167,8 @@ class Search:
 class Searched(NamedTuple):
     """Results of a search at n points; those that are NaN belong to points that were not searched.
 
+    A search that ends near the trim has `arrived`, `first` and `last` alone; the rest is None.
+
     arrived : array (n,)
     before : array (4, n)
         State before the last step.
@@ -179,12 +181,12 @@ class Searched(NamedTuple):
     """
 
     arrived: Array
-    before: Array
     first: Array
     last: Array
-    work: Array
-    moments: Array
-    doubts: Array
+    before: Any = None
+    work: Any = None
+    moments: Any = None
+    doubts: Any = None
 
 
 def search_trim(
@@ -203,19 +205,17 @@ def search_trim(
     for name, table in _layouts_of_trim(plans).items():
         setattr(given, name, table)
     arrived = wanted.copy()
-    full = not search.unloaded  # what the last stage returns besides
-    found = Searched(
-        arrived,
-        np.full((4, points), np.nan),
-        np.full((2, points, k, k), np.nan),
-        np.full((2, points, k, k), np.nan),
-        np.full((points, 5), np.nan),
-        np.full((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.ends) - 1, points), np.nan),
-        np.full((2, points, blades.ends[-1]), np.nan),
-    )
-    places = {name: getattr(found, name).ctypes.data for name in ("first", "last")}
-    if full:
-        places |= {name: getattr(found, name).ctypes.data for name in ("before", "work", "moments", "doubts")}
+    found = Searched(arrived, *np.full((2, 2, points, k, k), np.nan))
+    if not search.ends_near:
+        found = found._replace(
+            before=np.full((4, points), np.nan),
+            work=np.full((points, 5), np.nan),
+            moments=np.full((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.ends) - 1, points), np.nan),
+            doubts=np.full((2, points, blades.ends[-1]), np.nan),
+        )
+    parts = found._asdict()
+    del parts["arrived"]
+    places = {name: array.ctypes.data for name, array in parts.items() if array is not None}
     results = _Found(
         state=state.ctypes.data, iterations=iterations.ctypes.data, active=arrived.ctypes.data, **places
     )
