@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 _GAP = 2  # spaces between two columns
 _INDENT = 4  # of text that stands beneath a row
-_BROKEN = re.compile(r"[^._\]]*[._\]]+|[^._\]]+")  # the parts of a long name
+_BREAK = re.compile(r"(?<=[._\]])(?=[^\W\d])")  # between the parts of a long name; a number has none
 
 
 class Laid(NamedTuple):
@@ -105,7 +105,7 @@ def _whole(cell: str) -> list[str]:
 
 def _parts(cell: str) -> list[str]:
     """Return the parts of the words of a cell between which long names may break."""
-    return [part for word in cell.split() for part in _BROKEN.findall(word)]
+    return [part for word in cell.split() for part in _BREAK.split(word)]
 
 
 def _shrunk(widths: list[int], least: list[int], width: int) -> list[int]:
@@ -154,7 +154,7 @@ def _wrapped(cell: str, width: int, *, broken: bool) -> list[str]:
 def _name_wrapped(line: str, width: int) -> list[str]:
     """Return the lines of a name that is too long for one line, as many of its parts on each as fit."""
     found = [""]
-    for part in _BROKEN.findall(line):
+    for part in _BREAK.split(line):
         if found[-1] and len(found[-1]) + len(part) > width:
             found.append("")
         found[-1] += part

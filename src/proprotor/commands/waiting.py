@@ -79,7 +79,7 @@ def waiting(step: str) -> Iterator[Callable[[str], None]]:
 
     The command gets a function that gives the step another name as it goes on. Steps may hold further steps.
     """
-    if not (sys.stderr.isatty() and os.environ.get("TERM") != "dumb"):
+    if not _watched():
         yield lambda step: None
         return
     _SPINNER.begin(step)
@@ -87,3 +87,9 @@ def waiting(step: str) -> Iterator[Callable[[str], None]]:
         yield _SPINNER.call
     finally:
         _SPINNER.end()
+
+
+def _watched() -> bool:
+    """Return whether the error stream is a terminal that can move its cursor, or TTY_COMPATIBLE says so."""
+    told = os.environ.get("TTY_COMPATIBLE")
+    return told == "1" if told in ("0", "1") else sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
