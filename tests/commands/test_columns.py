@@ -58,7 +58,7 @@ def test_a_name_that_is_too_long_breaks_between_its_parts():
     assert body[0].split()[0][-1] in "._]"
 
 
-@given(rows=TABLES, width=st.integers(40, 200))
+@given(rows=TABLES, width=st.integers(46, 200))
 def test_no_line_is_longer_than_the_width_and_nothing_is_lost(rows, width):
     columns = ("first", "second", "third", "fourth")
     head, body = laid_out(columns, rows, ("second", "fourth"), width, 20)

@@ -138,7 +138,7 @@ def test_failed_airspeeds_have_their_reasons_on_the_first_page(case):
 
 
 def test_where_nothing_could_be_analysed_the_summary_has_what_needs_no_trim(case):
-    found, document = reported(case, "780:800:10kt", 250 * KT)
+    _, document = reported(case, "780:800:10kt", 250 * KT)
     assert document.verdict == ("No airspeed could be analysed.",)
     (table,) = tables(document).values()
     assert {"Lock number γ", "solidity σ", "K_PG"} <= set(table.columns) and "ν_β, /rev" not in table.columns

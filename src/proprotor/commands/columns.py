@@ -1,8 +1,9 @@
 """Lay out a table within the width of a terminal: what is a number stays whole, and words wrap between words.
 
 A table that fits stands as it is. Else its headings wrap, then its last column, if that is text. Where too little room
-is left for a last column of long text, what is too long stands beneath its row, over the whole width. Then other columns of text wrap,
-and where that does not suffice, long names, such as a field of a deck, break after a dot, an underscore or a bracket.
+is left for a last column of long text, what is too long stands beneath its row, over the whole width. Then other
+columns of text wrap, and where that does not suffice, long names, such as a field of a deck, break after a dot, an
+underscore or a bracket.
 """
 
 from __future__ import annotations
@@ -105,7 +106,7 @@ def _parts(cell: str) -> list[str]:
 
 
 def _shrunk(widths: list[int], least: list[int], width: int) -> list[int]:
-    """Return widths from which the widest columns gave up characters, until the table fits or no column has any left."""
+    """Return widths from which the widest columns gave up characters, until the table fits or none has any left."""
     found = list(widths)
     while _total(found) > width:
         spare = [(wide, place) for place, wide in enumerate(found) if wide > least[place]]
