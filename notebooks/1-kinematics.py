@@ -13,7 +13,8 @@
 # %% [markdown]
 # # 1 Kinematics
 #
-# Eqs. 1–11 of AIAA-2002-1604: where a point of the blade is, and how it accelerates.
+# Eqs. 1–11 of AIAA-2002-1604 (E. L. Hathaway and F. Gandhi, *Modeling Refinements in Simple Tiltrotor Aeroelastic
+# Stability Analyses*): where a point of the blade is, and how it accelerates.
 #
 # The derivation starts from one position vector (`derive/kinematics.py`) and nothing else. Each equation
 # below stands beside what that vector gives to the paper's own order: first order in the cone
