@@ -15,7 +15,7 @@ from proprotor.plots.style import LABEL_SIZE, TITLE_SIZE
 from proprotor.typing import Axes, Dataset, Figure
 
 Limits = tuple[float, float]  # ends of an axis
-RIGHT = 0.75  # right edge of the axes as a share of the width, if labels stand beside the axes
+_RIGHT = 0.75  # right edge of the axes as a share of the width, if labels stand beside the axes
 
 
 def axes_or_new(ax: Axes | None, *, size: tuple[float, float] = (8, 5), labels_beside: bool = False) -> Axes:
@@ -29,7 +29,7 @@ def axes_or_new(ax: Axes | None, *, size: tuple[float, float] = (8, 5), labels_b
 
     figure, ax = plt.subplots(figsize=size, layout=None if labels_beside else "constrained")
     if labels_beside:
-        figure.subplots_adjust(left=0.09, right=RIGHT, bottom=0.55 / size[1], top=1 - 0.4 / size[1])
+        figure.subplots_adjust(left=0.09, right=_RIGHT, bottom=0.55 / size[1], top=1 - 0.4 / size[1])
     small_print.own(figure)
     return ax
 
@@ -39,7 +39,7 @@ def two_axes(size: tuple[float, float]) -> tuple[Figure, tuple[Axes, Axes]]:
     import matplotlib.pyplot as plt
 
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=size)
-    figure.subplots_adjust(left=0.09, right=RIGHT, top=1 - 0.2 / size[1], bottom=0.5 / size[1], hspace=0.1)
+    figure.subplots_adjust(left=0.09, right=_RIGHT, top=1 - 0.2 / size[1], bottom=0.5 / size[1], hspace=0.1)
     small_print.own(figure)
     return figure, (above, below)
 
@@ -74,14 +74,14 @@ def note(ax: Axes, text: str) -> None:
     small_print.add(ax, f"{text[:1].upper()}{text[1:].removesuffix('.')}.")
 
 
-def origin_of(attributes: Mapping[Any, Any], doubts: Iterable[str]) -> str:
+def _origin_of(attributes: Mapping[Any, Any], doubts: Iterable[str]) -> str:
     """Return the case of the numbers, its options, and a sentence for each doubt about the numbers."""
     return " ".join((stamp.line(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
 
 
 def say_origin(ax: Axes, attributes: Mapping[Any, Any], doubts: Iterable[str] = ()) -> None:
-    """Write `origin_of` the numbers in small print beneath the axes."""
-    small_print.add(ax, origin_of(attributes, doubts))
+    """Write the case, the options and the doubts of the numbers in small print beneath the axes."""
+    small_print.add(ax, _origin_of(attributes, doubts))
 
 
 def along(results: Dataset, line: Positions) -> Iterator[str]:

@@ -89,7 +89,7 @@ def named(ax: Axes, sweep: Dataset, lines: dict[str, Line2D], name: str) -> list
             note(ax, f"“{own}”: {of}")
     if len(every) <= _MOST:
         return every
-    broad = broad_lines(kept)
+    broad = _broad_lines(kept)
     note(ax, "Thin lines are other modes, without names")
     return broad
 
@@ -100,7 +100,7 @@ def name_of_last(ax: Axes) -> str:
     return _names(kept)[-1] if len(kept) > 1 else ""
 
 
-def broad_lines(kept: list[_Drawn]) -> list[Line2D]:
+def _broad_lines(kept: list[_Drawn]) -> list[Line2D]:
     """Return the lines of the modes that are broad in one of several sweeps."""
     least = 0.9 * max(line.get_linewidth() for one in kept for line in one.lines.values())
     modes = {mode for one in kept for mode, line in one.lines.items() if line.get_linewidth() >= least}
