@@ -19,7 +19,6 @@ import argparse
 import json
 import sys
 import time
-from collections import defaultdict
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
@@ -137,12 +136,11 @@ class Run:
 
     def go_on(self, batches: int, until: float, place: Path | None) -> None:
         """Judge batches until all are done or the time is over, and keep what was found."""
-        families = defaultdict(Tally, self.families)
-        self.families, told = families, time.perf_counter()
+        told = time.perf_counter()
         while self.done < batches and time.perf_counter() < until:
             start = time.process_time()
             family, found = judge(self.done, self.every)
-            families[family].add(found)
+            self.families.setdefault(family, Tally()).add(found)
             self.seconds, self.done = self.seconds + time.process_time() - start, self.done + 1
             if time.perf_counter() - told > _EACH:
                 told = time.perf_counter()
