@@ -18,16 +18,21 @@ class Column(ctypes.Structure):
     _fields_ = (("at", ctypes.c_void_p), ("point", ctypes.c_ssize_t), ("along", ctypes.c_ssize_t))
 
 
-def column(value: Any, kept: list[Array]) -> Column:
-    """Return a number, or an array (along,), (points, along) or (1, along), as a column; `kept` keeps it in memory."""
-    array = np.asarray(value, dtype=float)
-    kept.append(array)
+def place_of(array: Array) -> tuple[int, int, int]:
+    """Return where an array (along,), (points, along) or (1, along) of floats begins, and its strides as of `Column`."""
     strides = [
         stride // array.itemsize if size > 1 else 0
         for stride, size in zip(array.strides, array.shape, strict=True)
     ]
     point, along = (0,) * (2 - array.ndim) + tuple(strides)
-    return Column(array.ctypes.data, point, along)
+    return array.__array_interface__["data"][0], point, along
+
+
+def column(value: Any, kept: list[Array]) -> Column:
+    """Return a number, or an array as of `place_of`, as a column; `kept` keeps it in memory."""
+    array = np.asarray(value, dtype=float)
+    kept.append(array)
+    return Column(*place_of(array))
 
 
 def address(array: Array) -> Any:

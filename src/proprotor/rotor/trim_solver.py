@@ -131,21 +131,28 @@ def solve_trim(
     one : bool
         Compute the only point with plain numbers where this is possible.
     """
-    free = _free_unknowns(options, target.finds_collective)
-    balance = Balance(sections, quantities, options, target, free, points)
+    balance = balance_of(sections, quantities, options, target, points)
     numbers = (*quantities.values(), target.collective, target.load)
     with np.errstate(all="ignore"):
         if sections.is_complex or any(map(_is_complex, numbers)):
             return _complex_trim(balance, few, points)
-        if one and free and balance.fused and few is sections and not has_offset_mass(quantities):
+        if one and balance.free and balance.fused and few is sections and not has_offset_mass(quantities):
             found = trim_of_one(balance)
             if found is not None:
                 return _settled(balance, found)
         search = _Search.of(balance, points)
-        if free:
+        if balance.free:
             search.come_near(balance if few is sections else replace(balance, sections=few))
             search.finish()
         return _settle(balance, search.state, search.before, search.reason, search.iterations, search.last)
+
+
+def balance_of(
+    sections: BladeSections, quantities: Mapping[str, Any], options: Options, target: Target, points: int
+) -> Balance:
+    """Return the balance of a blade at all points, see `solve_trim`."""
+    free = _free_unknowns(options, target.finds_collective)
+    return Balance(sections, quantities, options, target, free, points)
 
 
 @dataclass(eq=False)
