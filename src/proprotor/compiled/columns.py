@@ -19,12 +19,15 @@ class Column(ctypes.Structure):
 
 
 def place_of(array: Array) -> tuple[int, int, int]:
-    """Return where an array (along,), (points, along) or (1, along) of floats begins, and its strides as of `Column`."""
+    """Return where an array begins, and the strides of its last two axes as of `Column`.
+
+    Arrays of floats (along,), (points, along) and (1, along) are columns.
+    """
     strides = [
         stride // array.itemsize if size > 1 else 0
         for stride, size in zip(array.strides, array.shape, strict=True)
     ]
-    point, along = (0,) * (2 - array.ndim) + tuple(strides)
+    point, along = [0, 0, *strides][-2:]
     return array.__array_interface__["data"][0], point, along
 
 
@@ -37,11 +40,11 @@ def column(value: Any, kept: list[Array]) -> Column:
 
 def address(array: Array) -> Any:
     """Return where an array begins."""
-    return ctypes.c_void_p(array.ctypes.data)
+    return ctypes.c_void_p(array.__array_interface__["data"][0])
 
 
 def lane_room(vectors: int) -> Array:
     """Return memory for vectors of lanes, at a place where they may begin."""
     memory = np.empty((vectors + 1) * _WIDEST, dtype=np.uint8)
-    start = -memory.ctypes.data % _WIDEST
+    start = -memory.__array_interface__["data"][0] % _WIDEST
     return memory[start:]

@@ -53,36 +53,47 @@ whole eliminate(int n, int columns, lanes *rows)
     return unsafe;
 }
 
-/* Matrices (points, size, size) of a rotor on its hub's six coordinates, on a support with `modes` coordinates whose hub
-   moves by `hub` (6, modes), with the support's own matrix added: (points, modes + size - 6, ...). */
-void on_support(ptrdiff_t points, int size, int modes, const double *rotor, const struct column *hub, const struct column *addition, double *found)
+#define HUB 6 /* coordinates of a hub, the first of a rotor alone */
+#define MOST 64
+
+/* Put a matrix (points, size, columns) of a rotor alone on a support with `modes` coordinates, whose hub moves by `hub`
+   (6, modes): its rows, and its columns too if these are coordinates, not inputs. The support's own matrix is added. */
+static void put_on_support(ptrdiff_t points, int size, int columns, int modes, int are_inputs, const double *rotor, const struct column *hub, const struct column *addition, double *found)
 {
-    enum { HUB = 6, MOST = 64 };
-    int others = size - HUB, n = modes + others;
-    lanes motion[HUB * MOST], columns[HUB * MOST];
+    int others = size - HUB, rows = modes + others, moved = are_inputs ? 0 : HUB, first = are_inputs ? 0 : modes;
+    int wide = first + columns - moved;
+    struct column own = {rotor, (ptrdiff_t)size * columns, 1};
     for (ptrdiff_t point = 0; point < points; point += LANES) {
-        struct column own = {rotor, (ptrdiff_t)size * size, 1};
+        lanes motion[HUB * MOST], at_hub[HUB * MOST];
         for (int k = 0; k < HUB * modes; k++) motion[k] = load(hub, point, points, k);
         for (int i = 0; i < size; i++) {
             lanes row[MOST];
-            for (int j = 0; j < modes; j++) row[j] = all(0.0);
-            for (int k = 0; k < HUB; k++) {
-                lanes here = load(&own, point, points, (ptrdiff_t)i * size + k);
-                for (int j = 0; j < modes; j++) row[j] += here * motion[k * modes + j];
+            for (int j = 0; j < first; j++) row[j] = all(0.0);
+            for (int k = 0; k < moved; k++) {
+                lanes here = load(&own, point, points, (ptrdiff_t)i * columns + k);
+                for (int j = 0; j < first; j++) row[j] += here * motion[k * modes + j];
             }
-            for (int j = 0; j < others; j++) row[modes + j] = load(&own, point, points, (ptrdiff_t)i * size + HUB + j);
-            for (int j = 0; j < n; j++) {
-                if (i < HUB) columns[i * MOST + j] = row[j];
-                else store(row[j], found + (ptrdiff_t)(modes + i - HUB) * n + j, (ptrdiff_t)n * n, point, points);
+            for (int j = first; j < wide; j++) row[j] = load(&own, point, points, (ptrdiff_t)i * columns + moved + j - first);
+            for (int j = 0; j < wide; j++) {
+                if (i < HUB) at_hub[i * MOST + j] = row[j];
+                else store(row[j], found + (ptrdiff_t)(modes + i - HUB) * wide + j, (ptrdiff_t)rows * wide, point, points);
             }
         }
         for (int i = 0; i < modes; i++)
-            for (int j = 0; j < n; j++) {
-                lanes sum = j < modes ? load(addition, point, points, (ptrdiff_t)i * modes + j) : all(0.0);
-                for (int k = 0; k < HUB; k++) sum += motion[k * modes + i] * columns[k * MOST + j];
-                store(sum, found + (ptrdiff_t)i * n + j, (ptrdiff_t)n * n, point, points);
+            for (int j = 0; j < wide; j++) {
+                lanes sum = j < first ? load(addition, point, points, (ptrdiff_t)i * modes + j) : all(0.0);
+                for (int k = 0; k < HUB; k++) sum += motion[k * modes + i] * at_hub[k * MOST + j];
+                store(sum, found + (ptrdiff_t)i * wide + j, (ptrdiff_t)rows * wide, point, points);
             }
     }
+}
+
+/* Matrices M, C, K (points, size, size) and, unless it is null, B (points, size, inputs) of a rotor alone on a support,
+   with the support's own M, C, K added: (points, modes + size - 6, ...). */
+void on_support(ptrdiff_t points, int size, int modes, int inputs, const double *const *rotor, const struct column *hub, const struct column *additions, double *const *found)
+{
+    for (int k = 0; k < 3; k++) put_on_support(points, size, size, modes, 0, rotor[k], hub, &additions[k], found[k]);
+    if (rotor[3]) put_on_support(points, size, inputs, modes, 1, rotor[3], hub, 0, found[3]);
 }
 
 /* Find in which mass matrices (points, n, n) every motion has mass for certain, by the pivots of M + its transpose. `rows`

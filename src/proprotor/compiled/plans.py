@@ -177,11 +177,19 @@ def _columns(
         else:
             numbers[place] = float(value)
     memory = np.array(numbers)
-    columns = np.zeros((len(names), 3), dtype=np.intp)
-    columns[:, 0] = memory.__array_interface__["data"][0] + memory.itemsize * np.arange(len(names))
+    columns = _side_by_side(len(names)).copy()
+    columns[:, 0] += memory.__array_interface__["data"][0]
     for place, array in arrays.items():
         columns[place] = place_of(array)
     return columns, [memory, *arrays.values()]
+
+
+@cache
+def _side_by_side(count: int) -> Array:
+    """Return columns (count, 3) of numbers that all points share, from the place of the first of them on."""
+    columns = np.zeros((count, 3), dtype=np.intp)
+    columns[:, 0] = np.dtype(float).itemsize * np.arange(count)
+    return columns
 
 
 @dataclass(frozen=True)
