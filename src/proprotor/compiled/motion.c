@@ -60,31 +60,28 @@ whole eliminate(int n, int columns, lanes *rows)
    (6, modes): its rows, and its columns too if these are coordinates, not inputs. The support's own matrix is added. */
 static void put_on_support(ptrdiff_t points, int size, int columns, int modes, int are_inputs, const double *rotor, const struct column *hub, const struct column *addition, double *found)
 {
-    int others = size - HUB, rows = modes + others, moved = are_inputs ? 0 : HUB, first = are_inputs ? 0 : modes;
+    int rows = modes + size - HUB, moved = are_inputs ? 0 : HUB, first = are_inputs ? 0 : modes;
     int wide = first + columns - moved;
-    struct column own = {rotor, (ptrdiff_t)size * columns, 1};
+    ptrdiff_t own = (ptrdiff_t)size * columns, result = (ptrdiff_t)rows * wide;
     for (ptrdiff_t point = 0; point < points; point += LANES) {
-        lanes motion[HUB * MOST], at_hub[HUB * MOST];
-        for (int k = 0; k < HUB * modes; k++) motion[k] = load(hub, point, points, k);
+        lanes motion[HUB * MOST], at_hub[HUB * MOST], row[MOST + HUB], sum[MOST];
+        load_row(hub->at, hub->point, point, points, (ptrdiff_t)HUB * modes, motion);
         for (int i = 0; i < size; i++) {
-            lanes row[MOST];
-            for (int j = 0; j < first; j++) row[j] = all(0.0);
-            for (int k = 0; k < moved; k++) {
-                lanes here = load(&own, point, points, (ptrdiff_t)i * columns + k);
-                for (int j = 0; j < first; j++) row[j] += here * motion[k * modes + j];
-            }
-            for (int j = first; j < wide; j++) row[j] = load(&own, point, points, (ptrdiff_t)i * columns + moved + j - first);
-            for (int j = 0; j < wide; j++) {
-                if (i < HUB) at_hub[i * MOST + j] = row[j];
-                else store(row[j], found + (ptrdiff_t)(modes + i - HUB) * wide + j, (ptrdiff_t)rows * wide, point, points);
-            }
+            lanes *into = i < HUB ? at_hub + i * MOST : sum;
+            load_row(rotor + (ptrdiff_t)i * columns, own, point, points, columns, row);
+            for (int j = 0; j < first; j++) into[j] = all(0.0);
+            for (int k = 0; k < moved; k++)
+                for (int j = 0; j < first; j++) into[j] += row[k] * motion[k * modes + j];
+            for (int j = first; j < wide; j++) into[j] = row[moved + j - first];
+            if (i >= HUB) store_row(sum, found + (ptrdiff_t)(modes + i - HUB) * wide, result, point, points, wide);
         }
-        for (int i = 0; i < modes; i++)
-            for (int j = 0; j < wide; j++) {
-                lanes sum = j < first ? load(addition, point, points, (ptrdiff_t)i * modes + j) : all(0.0);
-                for (int k = 0; k < HUB; k++) sum += motion[k * modes + i] * at_hub[k * MOST + j];
-                store(sum, found + (ptrdiff_t)i * wide + j, (ptrdiff_t)rows * wide, point, points);
-            }
+        for (int i = 0; i < modes; i++) {
+            if (first) load_row(addition->at + (ptrdiff_t)i * modes, addition->point, point, points, first, sum);
+            for (int j = first; j < wide; j++) sum[j] = all(0.0);
+            for (int k = 0; k < HUB; k++)
+                for (int j = 0; j < wide; j++) sum[j] += motion[k * modes + i] * at_hub[k * MOST + j];
+            store_row(sum, found + (ptrdiff_t)i * wide, result, point, points, wide);
+        }
     }
 }
 
@@ -100,12 +97,11 @@ void on_support(ptrdiff_t points, int size, int modes, int inputs, const double 
    has room for n * n. */
 void have_mass(ptrdiff_t points, int n, const double *mass, unsigned char *found, lanes *rows)
 {
-    struct column own = {mass, (ptrdiff_t)n * n, 1};
     for (ptrdiff_t point = 0; point < points; point += LANES) {
         whole certain = every(-1);
+        load_row(mass, (ptrdiff_t)n * n, point, points, (ptrdiff_t)n * n, rows);
         for (int i = 0; i < n; i++)
-            for (int j = 0; j <= i; j++)
-                rows[i * n + j] = load(&own, point, points, i * n + j) + load(&own, point, points, j * n + i);
+            for (int j = 0; j <= i; j++) rows[i * n + j] += rows[j * n + i];
         for (int k = 0; k < n; k++) {
             /* Row k of the factor: its entries times their pivots, then divided by these. */
             lanes pivot = rows[k * n + k];

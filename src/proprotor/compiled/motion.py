@@ -33,7 +33,8 @@ def on_support(matrices: Sequence[Array], hub: Array, additions: Sequence[Array]
         np.empty((points, n, n if place < len(additions) else inputs)) for place in range(len(given))
     ]
     at_hub, *own = (
-        column(part.reshape(*part.shape[:-2], part.shape[-2] * modes), kept) for part in (hub, *additions)
+        column(np.ascontiguousarray(part).reshape(*part.shape[:-2], part.shape[-2] * modes), kept)
+        for part in (hub, *additions)
     )
     pointers = ctypes.c_void_p * 4
     library().on_support(

@@ -137,15 +137,16 @@ void FOR(balance_of_blade)(ptrdiff_t points, const struct blade *blade, double *
 
 #include "trim.h"
 
+#define MOST_ENTRIES 1024
+
 /* Store the sum of two matrices, the second of which may be missing. */
 static void store_sum(const struct layout *one, const lanes *of_one, const struct layout *other, const lanes *of_other, double *matrices, ptrdiff_t point, ptrdiff_t points)
 {
+    lanes sum[MOST_ENTRIES];
     ptrdiff_t size = one->rows * one->columns;
-    for (ptrdiff_t k = 0; k < size; k++) {
-        lanes value = entry(one, of_one, k);
-        if (other) value += entry(other, of_other, k);
-        store(value, matrices + k, size, point, points);
-    }
+    fill(one, of_one, sum);
+    for (ptrdiff_t k = 0; other && k < size; k++) sum[k] += entry(other, of_other, k);
+    store_row(sum, matrices, size, point, points, size);
 }
 
 /* Layouts of the plans: M, C, K, B without airloads; C, K, B of airloads; W, L, U and G of a segment. */
