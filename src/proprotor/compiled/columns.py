@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from proprotor.typing import Array
 
 _WIDEST = 64  # bytes of a vector register
+_MOST_KEPT = 2**20  # bytes
 
 
 class Column(ctypes.Structure):
@@ -43,8 +45,26 @@ def address(array: Array) -> Any:
     return ctypes.c_void_p(array.__array_interface__["data"][0])
 
 
+class _Own(threading.local):
+    """Memory of each thread."""
+
+    def __init__(self) -> None:
+        self.memory = np.empty(0, dtype=np.uint8)
+
+
+_OWN = _Own()
+
+
 def lane_room(vectors: int) -> Array:
-    """Return memory for vectors of lanes, at a place where they may begin."""
-    memory = np.empty((vectors + 1) * _WIDEST, dtype=np.uint8)
+    """Return memory for vectors of lanes, at a place where they may begin, until the thread asks again.
+
+    A few vectors have the same place each time: to get new memory takes longer than most calls.
+    """
+    size = (vectors + 1) * _WIDEST
+    memory = _OWN.memory
+    if size > len(memory):
+        memory = np.empty(size, dtype=np.uint8)
+        if size <= _MOST_KEPT:
+            _OWN.memory = memory
     start = -memory.__array_interface__["data"][0] % _WIDEST
     return memory[start:]

@@ -53,6 +53,30 @@ whole eliminate(int n, int columns, lanes *rows)
     return unsafe;
 }
 
+whole find_state_matrix(int n, int count_held, const int32_t *held, ptrdiff_t first, ptrdiff_t count, const double *const *matrices, lanes *equations, lanes *h)
+{
+    int states = n + count_held, wide = n + states;
+    load_equations(n, count_held, held, first, count, matrices, equations);
+    whole unsafe = eliminate(n, wide, equations);
+    for (int i = 0; i < count_held; i++)
+        for (int j = 0; j < states; j++) h[i * states + j] = all(j == count_held + held[i] ? 1.0 : 0.0);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < states; j++) h[(count_held + i) * states + j] = -equations[i * wide + n + j];
+    return unsafe;
+}
+
+/* State matrices (count, states, states) of equations of motion, as of `roots_of_motion`; `unsafe` marks those that
+   elimination in the order of the rows does not solve well. `work` has room for one of them and its equations. */
+void state_matrices(int n, int count_held, const int32_t *held, ptrdiff_t count, const double *const *matrices, double *found, unsigned char *unsafe, lanes *work)
+{
+    ptrdiff_t size = (ptrdiff_t)(n + count_held) * (n + count_held);
+    for (ptrdiff_t first = 0; first < count; first += LANES) {
+        whole failed = find_state_matrix(n, count_held, held, first, count, matrices, work + size, work);
+        store_row(work, found, size, first, count, size);
+        for (int lane = 0; lane < LANES && first + lane < count; lane++) unsafe[first + lane] = failed[lane] != 0;
+    }
+}
+
 #define HUB 6 /* coordinates of a hub, the first of a rotor alone */
 #define MOST 64
 

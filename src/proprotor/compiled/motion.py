@@ -57,3 +57,26 @@ def have_mass(mass: Array) -> Array:
     room = lane_room(n * n)
     library().have_mass(ctypes.c_ssize_t(points), ctypes.c_int(n), *map(address, (given, found, room)))
     return found
+
+
+def state_matrices(
+    mass: Array, damping: Array, stiffness: Array, held: Sequence[int]
+) -> tuple[Array, Array]:
+    """Return state matrices (points, states, states) of equations of motion (points, n, n), and which are not solved.
+
+    `held` are the coordinates whose displacement is a state. The mass matrix of a point that is not solved takes
+    exchanges of rows, or has no inverse: its numbers mean nothing.
+    """
+    points, n, _ = mass.shape
+    states, places = n + len(held), np.array(held, dtype=np.int32)
+    given = [np.ascontiguousarray(part, dtype=float) for part in (mass, damping, stiffness)]
+    found, unsafe = np.empty((points, states, states)), np.empty(points, dtype=bool)
+    library().state_matrices(
+        ctypes.c_int(n),
+        ctypes.c_int(len(held)),
+        address(places),
+        ctypes.c_ssize_t(points),
+        (ctypes.c_void_p * 3)(*(place_of(part)[0] for part in given)),
+        *map(address, (found, unsafe, lane_room(states * states + n * (n + states)))),
+    )
+    return found, unsafe
