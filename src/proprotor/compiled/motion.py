@@ -15,7 +15,7 @@ MOST_ROWS = 64  # of motion.c, of the result
 
 
 def on_support(matrices: Sequence[Array], hub: Array, additions: Sequence[Array]) -> list[Array]:
-    """Return Tᵀ (...) T of M, C, K, T = diag(Φ, 1), plus matrices of the support's coordinates; and Tᵀ B, if there is B.
+    """Return Tᵀ (...) T of M, C, K, T = diag(Φ, 1), plus matrices of the support's coordinates; and Tᵀ B, if given.
 
     Parameters
     ----------
@@ -29,9 +29,7 @@ def on_support(matrices: Sequence[Array], hub: Array, additions: Sequence[Array]
     points, size, inputs = given[-1].shape
     modes = hub.shape[-1]
     n, kept = modes + size - 6, list[Array]()
-    found = [
-        np.empty((points, n, n if place < len(additions) else inputs)) for place in range(len(given))
-    ]
+    found = [np.empty((points, n, n if place < len(additions) else inputs)) for place in range(len(given))]
     at_hub, *own = (
         column(np.ascontiguousarray(part).reshape(*part.shape[:-2], part.shape[-2] * modes), kept)
         for part in (hub, *additions)
@@ -59,9 +57,7 @@ def have_mass(mass: Array) -> Array:
     return found
 
 
-def state_matrices(
-    mass: Array, damping: Array, stiffness: Array, held: Sequence[int]
-) -> tuple[Array, Array]:
+def state_matrices(mass: Array, damping: Array, stiffness: Array, held: Sequence[int]) -> tuple[Array, Array]:
     """Return state matrices (points, states, states) of equations of motion (points, n, n), and which are not solved.
 
     `held` are the coordinates whose displacement is a state. The mass matrix of a point that is not solved takes

@@ -21,7 +21,10 @@ _ALONG = (
     *("lift_slope", "zero_lift_angle", "drag", "moment"),
 )
 _OF_POINTS = ("tip", "load", "collective", "structural_offset")
-_FIRST_STATIONS, _FIRST_POINTS = 2, 2 + 3 * (len(_ALONG) + _POWERS)  # words of the record of blades, see points.h
+_FIRST_STATIONS, _FIRST_POINTS = (
+    2,
+    2 + 3 * (len(_ALONG) + _POWERS),
+)  # words of the record of blades, see points.h
 
 
 class _Layout(ctypes.Structure):
@@ -105,7 +108,7 @@ class Balanced(NamedTuple):
 
 @dataclass(frozen=True)
 class Stations:
-    """Stations of blades in memory: the first of each segment and one behind the last, and a column for each quantity."""
+    """Stations of blades in memory: the first of each segment and one behind the last, a column for each quantity."""
 
     ends: Array
     columns: Array
@@ -162,7 +165,7 @@ class Blades:
 def _columns(
     names: Sequence[str], quantities: Mapping[str, Any], segments: Mapping[str, Any]
 ) -> tuple[Array, list[Array]]:
-    """Return columns (names, 3) of quantities, numbers or arrays (n,), and of those of segments, and what they point at.
+    """Return columns (names, 3) of quantities, numbers or arrays (n,), and of segments, and what they point at.
 
     Numbers stand side by side in an array of their own. A quantity that is missing is zero.
     """

@@ -71,8 +71,8 @@ def first_order(model: LinearModel) -> Array:
 def _compiled(model: LinearModel) -> Array:
     """Return A by compiled functions, and by LAPACK where the mass matrix takes exchanges of rows."""
     n, shape = len(model.dofs), model.M.shape[:-2]
-    flat = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
-    matrix, left = state_matrices(*flat, held_coordinates(model))
+    mass, damping, stiffness = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
+    matrix, left = state_matrices(mass, damping, stiffness, held_coordinates(model))
     matrix = matrix.reshape(*shape, *matrix.shape[-2:])
     if left.any():
         points = left.reshape(shape)

@@ -139,7 +139,7 @@ def with_warning(trim: Trim, warning: Array | None) -> Trim:
 
 
 def _on_support(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) -> dict[str, Array]:
-    """Return Tᵀ (...) T of M, C, K plus the support's matrices, and Tᵀ B; T = diag(Φ, 1) leaves the rotor's own blocks."""
+    """Return Tᵀ (...) T of M, C, K plus the support's, and Tᵀ B; T = diag(Φ, 1) leaves the rotor's own block."""
     if rotor.is_compiled and _are_served(rotor, hub, additions):
         return _compiled(rotor, hub, additions)
     found = {name: _of_one(getattr(rotor, name), hub, addition) for name, addition in additions.items()}
@@ -184,8 +184,7 @@ def _compiled(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) ->
     flat = [matrix.reshape(-1, *matrix.shape[-2:]) for matrix in matrices.values()]
     found = on_support(flat, at_hub, own)
     return {
-        name: matrix.reshape(*shape, *matrix.shape[-2:])
-        for name, matrix in zip(matrices, found, strict=True)
+        name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in zip(matrices, found, strict=True)
     }
 
 

@@ -23,7 +23,7 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.in_flight import in_flight, serves_in_flight
+from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
 from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import (
     LAGS_PER_BLADE,
@@ -173,7 +173,7 @@ class _Asked(NamedTuple):
         if not serves_in_flight(balance, few):
             settled = self.trimmed(one)
             return _matrices(sections, options, settled, reactionless, n, one), settled.trim
-        found = in_flight(balance)
+        found = find_in_flight(balance)
         if not options.pitch_is_free:
             found.matrices["B"] = _without_pitch_equations(found.matrices["K"], found.matrices["B"])
         if not found.served.all():

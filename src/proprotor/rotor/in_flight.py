@@ -25,8 +25,8 @@ from proprotor.typing import Array
 _MOST = 20  # steps of each stage; a point that takes more takes `trim_solver`
 
 
-class InFlight(NamedTuple):
-    """Rotors at n points: trim and matrices M, C, K and B (n, rows, columns), which hold at the points `served` (n,)."""
+class _InFlight(NamedTuple):
+    """Rotors at n points: trim, and M, C, K and B (n, rows, columns), which hold at the points `served` (n,)."""
 
     served: Array
     trim: Trim
@@ -38,12 +38,10 @@ def serves_in_flight(balance: Balance, few: BladeSections) -> bool:
     options = balance.options
     usual = serves(options.equation_set) and options.airloads == "full" and options.pitch != "coupling"
     apart = options.reactionless or options.blades_lag or options.is_tilted
-    return bool(
-        usual and not apart and balance.free and few is balance.sections and serves_search(balance)
-    )
+    return bool(usual and not apart and balance.free and few is balance.sections and serves_search(balance))
 
 
-def in_flight(balance: Balance) -> InFlight:
+def find_in_flight(balance: Balance) -> _InFlight:
     """Return trim and matrices of all points of a balance that has no reservations."""
     plans, finds_collective = balance.plans, balance.target.finds_collective
     limits = Limits(
@@ -69,4 +67,4 @@ def in_flight(balance: Balance) -> InFlight:
         warning=none.copy(),
         iterations=found.iterations,
     )
-    return InFlight(found.served, trim, found.matrices)
+    return _InFlight(found.served, trim, found.matrices)
