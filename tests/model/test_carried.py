@@ -27,7 +27,7 @@ from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
 from proprotor.model.several_rotors import MountedRotor
 from proprotor.plots import mode_motion
-from proprotor.plots.animation import title_of
+from proprotor.plots.mode_shape import title_of
 from proprotor.rotor.options import CHOICES, Options, parse_options
 from proprotor.stability import flutter
 from proprotor.stability.attribution import attribution
