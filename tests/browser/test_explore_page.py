@@ -77,8 +77,8 @@ def readout(browser):
 
 def damping(browser):
     script = (
-        "const plot = Bokeh.documents[0].get_model_by_name('damping');"
-        "return Array.from(plot.renderers[0].data_source.get_column('damping')[arguments[0]]);"
+        "const lines = Bokeh.documents[0].get_model_by_name('lines');"
+        "return Array.from(lines.get_column('damping')[arguments[0]]);"
     )
     return np.array(browser.execute_script(script, 1))
 
@@ -132,7 +132,7 @@ def test_what_was_set_is_downloaded_as_a_deck_that_runs(page):
         + """
       const view = [...Bokeh.index.all_views()].find((one) => one.model === model);
       view.shadow_el.querySelector("button").click();""",
-        "save",
+        "save Deck (TOML)",
     )
     saved = Path(page.downloads, "xv15-uncoupled-explored.toml")
     wait(page, saved.exists)
