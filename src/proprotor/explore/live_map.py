@@ -6,7 +6,7 @@ from collections.abc import Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
 from bokeh.layouts import column
-from bokeh.models.widgets import Div, Slider
+from bokeh.models.widgets import Slider
 
 from proprotor.errors import InputError
 from proprotor.explore import words
@@ -16,6 +16,7 @@ from proprotor.explore.controls import GRIDS, airspeed_of_map, map_selections
 from proprotor.explore.drawings import Drawings
 from proprotor.explore.growth_plane import GrowthPlane, growth_plane
 from proprotor.explore.inputs import MapAxis, map_axis, slider_input
+from proprotor.explore.text import Text
 from proprotor.stability.parameter_lines import AIRSPEED
 from proprotor.units import KNOT, KTAS
 
@@ -44,7 +45,7 @@ class LiveMap:
         self.x, self.y, self.grid = map_selections(chosen.case, up)
         self.at: Slider = airspeed_of_map(chosen.case, chosen.airspeeds)
         self.compared = True
-        self.message = Div(name="map-message", sizing_mode="stretch_width")
+        self.message = Text("map-message", sizing_mode="stretch_width")
         self._parts: Iterator[None] | None = None  # of the map that is computed now
         self._resting: Any = None  # Bokeh's callback that begins a map
         self._drawn: object = None  # the settings that the map shows

@@ -23,7 +23,8 @@ from proprotor.explore.drawings import Drawings
 from proprotor.explore.input_panel import InputPanel
 from proprotor.explore.inputs import SliderInput, first_inputs
 from proprotor.explore.live_map import LiveMap
-from proprotor.explore.save_panel import SavePanel, script
+from proprotor.explore.save_panel import SavePanel
+from proprotor.explore.text import Text, script
 from proprotor.model.provenance import reservations
 from proprotor.model.stamp import of_case, unusual_options
 from proprotor.rotor.options import CHOICES
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from bokeh.document import Document
 
 _SWITCHES = tuple(name for name in CHOICES if name != "reactionless")
-_TOGETHER = 15  # ms: several moves within this time cause one analysis
 _WRAPS = ":host{flex-wrap:wrap}"
 _FILLS = ":host{flex:1 1 320px;min-width:0}"
 
@@ -68,10 +68,10 @@ class ExplorePage:
         self._waiting = self._held = False
         self._compared: object = None  # what the curves of the deck show
         self.readout, self.message, self.legend, self.foot = (
-            Div(name=name, sizing_mode="stretch_width")
+            Text(name, sizing_mode="stretch_width")
             for name in ("readout", "message", "legend", "reservations")
         )
-        self.modes, self.guide = Div(name="modes", width=SIDE), Div(name="help", width=SIDE)
+        self.modes, self.guide = Text("modes", width=SIDE), Text("help", width=SIDE)
         self.drawings = Drawings(airspeeds)
         self.inputs = InputPanel(self.chosen, self._soon, self._refuse, self._explain)
         self.switches = {name: option_switch(case, name, options[name]) for name in _SWITCHES}
@@ -89,7 +89,9 @@ class ExplorePage:
             switch.on_change("value", partial(self._switch_to, name))
         self.compare.on_change("active", lambda _, __, ___: self._soon())
         document.add_root(self._layout())
-        document.add_root(self.saves.file)
+        texts = (self.readout, self.message, self.legend, self.foot, self.modes, self.guide, self.map.message)
+        for source in (self.saves.file, *(text.source for text in texts)):
+            document.add_root(source)
         self.update()
 
     def update(self) -> None:
@@ -145,11 +147,11 @@ class ExplorePage:
         self.update()
 
     def _soon(self) -> None:
-        """Update the page once for all moves within a short time."""
+        """Update the page once for all moves that wait for an update."""
         if self._waiting or self._held or self.document is None:
             return
         self._waiting = True
-        self.document.add_timeout_callback(self.update, _TOGETHER)
+        self.document.add_next_tick_callback(self.update)
 
     def _layout(self) -> Any:
         reset = Button(label="Reset", name="reset", width=90)
@@ -159,9 +161,9 @@ class ExplorePage:
             "More": column(self.inputs.exact, self.inputs.choice),
             "Model": column(*self.switches.values()),
             "Map": self.map.controls(),
-            "Modes": self.modes,
+            "Modes": self.modes.div,
             "Save": self.saves.buttons,
-            "Help": self.guide,
+            "Help": self.guide.div,
         }
         panels = Tabs(tabs=[TabPanel(title=name, child=child) for name, child in tabs.items()], name="tabs")
         side = column(row(reset, self.compare), panels, width=SIDE + 20)
@@ -169,7 +171,8 @@ class ExplorePage:
         title = Div(
             text=f"<h1 style='font-size:18px;margin:4px 0'>{heading}</h1>", sizing_mode="stretch_width"
         )
+        above, below = (self.readout, self.message), (self.legend, self.map.message, self.foot)
         plots = self.drawings.layout()
-        shown = (title, self.readout, self.message, plots, self.legend, self.map.message, self.foot)
+        shown = (title, *(text.div for text in above), plots, *(text.div for text in below))
         main = column(*shown, sizing_mode="stretch_width", stylesheets=[_FILLS])
         return row(side, main, spacing=8, sizing_mode="stretch_width", stylesheets=[_WRAPS])

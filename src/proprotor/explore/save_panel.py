@@ -5,8 +5,6 @@ from __future__ import annotations
 import base64
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib import resources
-from typing import Any
 
 from bokeh.layouts import column
 from bokeh.models import ColumnDataSource, CustomJS
@@ -19,6 +17,7 @@ from proprotor.explore.chosen import Chosen
 from proprotor.explore.controls import SIDE
 from proprotor.explore.inputs import SliderInput
 from proprotor.explore.live_map import LiveMap
+from proprotor.explore.text import script
 from proprotor.explore.words import changed
 
 
@@ -95,8 +94,3 @@ class SavePanel:
             return saves.map_picture(own.varied, self.map.axes, self.map.airspeed, own.options, told, form)
         draw = saves.curves_picture if which == "sweep" else saves.root_locus_picture
         return draw(own.varied, own.airspeeds, own.options, told, form)
-
-
-def script(name: str) -> Any:
-    """Return a script of this room for the browser."""
-    return resources.files("proprotor.explore").joinpath(name).read_text(encoding="utf-8")

@@ -45,7 +45,7 @@ def readout(found: LiveModes, values: Mapping[str, float], inputs: Mapping[str, 
     if already := [one.mode for one in found.unstable if one.open_start]:
         verdict += f" Already unstable at {low} KTAS: {escape(', '.join(already))}."
     set_to = f"Changed: {changes}" if (changes := changed(values, inputs)) else "All inputs as in the deck."
-    return f'<div aria-live="polite"><b style="font-size:16px">{verdict}</b><br>{escape(set_to)}</div>'
+    return f'<div><b style="font-size:16px">{verdict}</b><br>{escape(set_to)}</div>'
 
 
 def changed(values: Mapping[str, float], inputs: Mapping[str, SliderInput]) -> str:
