@@ -20,7 +20,7 @@ from proprotor.typing import Array
 from proprotor.units import KNOT
 
 _DAMPING, _FREQUENCY, _GROWTH = (-5, 20), (0, 4.5), (-0.3, 0.15)
-_HEIGHT = 300  # pixels
+_HEIGHT = 280  # pixels
 _BESIDE = "#8c8c8c"  # lines of the deck, with which the page compares
 _FAILED = "#d9d9d9"
 _LARGEST = 1e4  # 1/s: growth that is larger is drawn as this

@@ -89,10 +89,18 @@ class ExplorePage:
             switch.on_change("value", partial(self._switch_to, name))
         self.compare.on_change("active", lambda _, __, ___: self._soon())
         document.add_root(self._layout())
-        texts = (self.readout, self.message, self.legend, self.foot, self.modes, self.guide, self.map.message)
-        for source in (self.saves.file, *(text.source for text in texts)):
-            document.add_root(source)
+        document.add_root(self.saves.file)
         self.update()
+        for text in (
+            self.readout,
+            self.message,
+            self.legend,
+            self.foot,
+            self.modes,
+            self.guide,
+            self.map.message,
+        ):
+            text.put_on(document)
 
     def update(self) -> None:
         """Analyse and draw the case with all settings; if that is impossible, say why and keep the last drawing."""
@@ -168,9 +176,7 @@ class ExplorePage:
         panels = Tabs(tabs=[TabPanel(title=name, child=child) for name, child in tabs.items()], name="tabs")
         side = column(row(reset, self.compare), panels, width=SIDE + 20)
         heading = escape(self.case.title or self.case.name)
-        title = Div(
-            text=f"<h1 style='font-size:18px;margin:4px 0'>{heading}</h1>", sizing_mode="stretch_width"
-        )
+        title = Div(text=f"<h1 style='font-size:16px;margin:0'>{heading}</h1>", sizing_mode="stretch_width")
         above, below = (self.readout, self.message), (self.legend, self.map.message, self.foot)
         plots = self.drawings.layout()
         shown = (title, *(text.div for text in above), plots, *(text.div for text in below))

@@ -41,7 +41,7 @@ class _OwnPages(BokehTornado):
         return super().find_handler(request, **more)
 
     def _is_own(self, request: Any) -> bool:
-        if request.host not in self.names or request.path.startswith("/autoload"):
+        if request.host not in self.names or request.path.removeprefix(self.secret).startswith("/autoload"):
             return False  # /autoload is Bokeh's script for foreign pages, and opens a session
         if (origin := request.headers.get("Origin")) is not None:
             return origin in {f"http://{name}" for name in self.names}

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from importlib import resources
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bokeh.models import ColumnDataSource, CustomJS
 from bokeh.models.widgets import Div
+
+if TYPE_CHECKING:
+    from bokeh.document import Document
 
 
 def script(name: str) -> Any:
@@ -25,13 +28,18 @@ class Text:
     div : Div
         Part of the layout.
     source : ColumnDataSource
-        Sends the text; a root of the document.
+        Sends the text.
     """
 
     def __init__(self, name: str, **style: Any) -> None:
-        self.div = Div(name=name, disable_math=True, **style)
+        self.div = Div(name=name, disable_math=True, margin=(2, 5), **style)
         self.source = ColumnDataSource({"text": [""]}, name=f"{name}-text")
         self.source.js_on_change("data", CustomJS(args={"div": self.div}, code=script("text.js")))
+
+    def put_on(self, document: Document) -> None:
+        """Show the text from the beginning of a page, and each later text."""
+        self.div.text = self.text
+        document.add_root(self.source)
 
     @property
     def text(self) -> str:
