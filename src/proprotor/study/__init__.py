@@ -13,6 +13,7 @@ description         what a study was asked, as plain data in the attributes of i
 study_file          files of studies: `save_study`, and the arguments of a study to repeat
 division            how many points a batch has, so that all batches at work fit into memory
 variables           the quantities of a study, their variables, and empty arrays for these
+backend             what computes a study: NumPy or compiled functions, the same from the first batch to the last
 batch               the analysis of one batch, with a reason for each design or point that fails
 roots               eigenvalues of a batch, mode shapes, the least stable mode
 followed_modes      modes of a batch, followed along the airspeeds of each design

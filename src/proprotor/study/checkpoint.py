@@ -53,7 +53,7 @@ class Checkpoint:
         Parameters
         ----------
         identity : mapping of str
-            A fingerprint of everything that the results depend on, by name.
+            Everything that the results depend on, by name: a fingerprint, or the text itself.
         division : mapping
             How the study is divided into batches.
 
@@ -72,6 +72,14 @@ class Checkpoint:
             division = self._begun(identity, division)
             self._study = json.dumps([dict(identity), division], sort_keys=True).encode()
             yield division
+
+    def begun_with(self, part: str) -> str:
+        """Return a part of the identity with which a study in the folder was begun; empty without one."""
+        try:
+            manifest = json.loads((self.folder / _MANIFEST).read_text(encoding="utf-8"))
+            return str(manifest["identity"].get(part, ""))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):  # `open` says what is wrong
+            return ""
 
     @contextmanager
     def _hold(self) -> Iterator[None]:
