@@ -91,6 +91,9 @@ RESULTS = {
         workers=1,
         **o,
     ),
+    "robust_boundary": lambda case, **o: pp.robust_boundary(
+        case, {"rotor.precone": ("1 deg", "2 deg")}, SPEEDS, size=2, workers=1, **o
+    ),
     "mode_motion.mode_motion": lambda case, **o: mode_motion.mode_motion(case, AT, "beam", **o),
     # Without options of their own, from a result that has them.
     "LinearModel.modes": lambda case, **o: case.linearize([180.0, 190.0], **o).modes(),
