@@ -53,6 +53,7 @@ from proprotor.stability.envelope import envelope
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.study import sampling
+from proprotor.study.robust_boundary import robust_boundary
 from proprotor.study.study import study
 from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
@@ -108,6 +109,7 @@ __all__ = [
     "read_record",
     "rigid_propeller",
     "rigid_support",
+    "robust_boundary",
     "rotor_model",
     "sampling",
     "save_dmig",

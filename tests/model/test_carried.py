@@ -28,7 +28,7 @@ from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
 from proprotor.model.several_rotors import MountedRotor
 from proprotor.plots import mode_motion
-from proprotor.plots.animation import title_of
+from proprotor.plots.mode_shape import title_of
 from proprotor.rotor.options import CHOICES, Options, parse_options
 from proprotor.stability import flutter
 from proprotor.stability.attribution import attribution
@@ -90,6 +90,9 @@ RESULTS = {
         ["eigenvalue", "flutter"],
         workers=1,
         **o,
+    ),
+    "robust_boundary": lambda case, **o: pp.robust_boundary(
+        case, {"rotor.precone": ("1 deg", "2 deg")}, SPEEDS, size=2, workers=1, **o
     ),
     "mode_motion.mode_motion": lambda case, **o: mode_motion.mode_motion(case, AT, "beam", **o),
     # Without options of their own, from a result that has them.
