@@ -4,8 +4,8 @@ They are read with numpydoc, the standard of the ecosystem. What is public: the 
 classes of the modules listed below, and of all those classes the public methods and properties.
 """
 
-import dataclasses
 import asyncio
+import dataclasses
 import inspect
 import re
 import sys

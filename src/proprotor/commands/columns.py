@@ -63,7 +63,9 @@ def _widths(table: list[tuple[str, ...]], words: list[bool], width: int, narrowe
     if _total(whole) <= width:
         return _Widths(whole)
     longest = _longest(table, words, str.split)
-    heads = [max([_of_word(cells[0], str.split), *map(len, cells[1:])]) for cells in zip(*table, strict=True)]
+    heads = [
+        max([_of_word(cells[0], str.split), *map(len, cells[1:])]) for cells in zip(*table, strict=True)
+    ]
     wrapped = _shrunk(whole, heads, width)
     if _total(wrapped) <= width:
         return _Widths(wrapped)
@@ -83,7 +85,9 @@ def _total(widths: Sequence[int]) -> int:
     return sum(widths) + _GAP * (len(widths) - 1)
 
 
-def _longest(table: list[tuple[str, ...]], words: list[bool], split: Callable[[str], list[str]]) -> list[int]:
+def _longest(
+    table: list[tuple[str, ...]], words: list[bool], split: Callable[[str], list[str]]
+) -> list[int]:
     """Return the least width of each column: of text the longest word, of numbers the longest number."""
     return [
         max(_of_word(cell, split if word or not place else _whole) for place, cell in enumerate(cells))
