@@ -97,6 +97,16 @@ NEEDS = {
         "report",
         lambda folder: command("report", "xv15-uncoupled", "--out", folder / "x.html", "--pdf"),
     ),
+    "--out report.docx": (
+        "docx",
+        "report",
+        lambda folder: command("report", "xv15-uncoupled", "--out", folder / "x.docx"),
+    ),
+    "--docx": (
+        "docx",
+        "report",
+        lambda folder: command("report", "xv15-uncoupled", "--out", folder / "x.html", "--docx"),
+    ),
     "explore": ("bokeh", "explore", lambda folder: command("explore", "xv15-uncoupled", "--no-browser")),
     "explore's server": (
         "tornado",

@@ -25,6 +25,7 @@ ALL = {
     "proprotor-equations": ("derive/test_equations_alone.py",),
     "psutil": ("project/test_needs.py::test_a_limit_of_a_control_group_counts",),
     "pydantic": ("deck/test_deck.py",),
+    "python-docx": ("report/test_word.py",),
     "rich": ("tables",),
     "salib": ("study/test_sampling.py", "study/test_uncertainty.py"),
     "scipy": ("support/test_matrix_market.py", "exchange/test_matlab_file.py"),
@@ -100,6 +101,7 @@ SHORT = ALL | {
         "deck/test_deck.py::test_a_mistake_is_told_in_one_line",
         "deck/test_deck.py::test_a_deck_that_cannot_be_found",
     ),
+    "python-docx": ("report/test_word.py::test_the_tables_are_those_of_the_document",),
     "rich": (
         "tables/test_sweep_table.py",
         f"{_COMMANDS}::test_what_takes_long_is_announced_on_a_terminal",
