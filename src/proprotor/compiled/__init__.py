@@ -6,13 +6,12 @@ functions hand over. Nothing needs this room: without a compiler everything is c
 
     library      builds, keeps and loads the library; says why there is none
     eigenvalues  eigenvalues and right vectors of many matrices, roots of equations of motion
-    single_file  writes header and source of the solver for programs in C, Fortran or MATLAB
     plans        trims of blades and matrices of rotors by the plans of the derivation
     bounds       the bound on the path to a trim
     motion       equations of motion on a support, whether every motion has mass, state matrices
     shapes, shapes.c
                  motion of the coordinates in the modes
-    single_file, interface.c, proprotor.h, proprotor.f90
+    single_file, interface.c, proprotor.h, proprotor.f90, matlab
                  the solver as one source for programs in C, Fortran or MATLAB
     columns, columns.h
                  how vectors of numbers, one lane for each problem, are read and written; their memory
