@@ -98,7 +98,7 @@ class Options:
         With a shaft angle or a load factor: a swashplate without cyclic pitch, or the cyclic pitch that keeps the
         gimbal level; without a gimbal, the pitch that keeps the blades from flapping once a turn.
     backend : "numpy", "compiled" or "auto"
-        What computes trims, matrices and eigenvalues: NumPy with LAPACK, or compiled functions for whole batches
+        What computes trims, matrices and eigenvalues: NumPy with LAPACK, or compiled functions
         (see `proprotor.compiled`), to rounding the same. "auto" takes these where there is a C compiler, and results
         say which of both it took.
     locked : collection of "flap", "lag", "pitch", "gimbal"
