@@ -44,6 +44,9 @@ lab: .venv/installed  ## Open the audit's notebooks in JupyterLab, to change a c
 	$(BIN)/python -m pip install --group lab
 	PYTHONPATH="$(CURDIR)" $(BIN)/python -m jupyter lab notebooks
 
+drawings: .venv/installed  ## Draw axes, hinges, gimbal and swashplate from the derivation into docs/figures/
+	$(BIN)/python -m derive.pages.drawings
+
 figures: .venv/installed  ## Make every analytical figure of the paper, with its numbers, in figures/
 	$(BIN)/python -m benchmarks.paper_figures --out figures
 
@@ -102,7 +105,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test test-browser verify verify-versions verify-environments regenerate-equations lint audit notebooks lab figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
+.PHONY: demo test test-browser verify verify-versions verify-environments regenerate-equations lint audit notebooks lab drawings figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml generated/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
