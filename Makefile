@@ -30,10 +30,11 @@ regenerate-equations: .venv/installed  ## Derive the equations again, write gene
 	$(BIN)/python -m derive.pages.index
 	$(BIN)/python -m derive.pages.glossary
 
-lint: .venv/installed  ## Check the style of the source
+lint: .venv/installed  ## Check style and spelling
 	$(BIN)/ruff check src derive tests benchmarks notebooks docs
 	$(BIN)/ruff check --preview --select PLW1514 src derive tests benchmarks notebooks docs  # text files have an encoding
 	$(BIN)/ruff format --check src derive tests benchmarks notebooks docs
+	$(BIN)/codespell README.md CHANGELOG.md Makefile src derive templates benchmarks notebooks docs  # tests misspell on purpose
 	$(BIN)/python -m tests.rooms
 
 notebooks: .venv/installed  ## Run the audit's notebooks and render them into docs/notebooks/

@@ -86,7 +86,7 @@ def _arrow(
 ) -> None:
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     arrow = {"arrowstyle": "-|>", "color": color, "shrinkA": 0, "shrinkB": 0} | style
-    ax.annotate("", end, start, arrowprops=arrow)
+    ax.annotate("", tuple(end), tuple(start), arrowprops=arrow)
     ax.update_datalim([start, end])
     if text:
         across, along = (end - start) / np.hypot(*(end - start))
