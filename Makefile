@@ -13,6 +13,10 @@ test: .venv/installed  ## Run the tests
 test-browser: .venv/installed  ## Move the sliders of `proprotor explore` in a real browser; needs Chromium and its driver
 	$(BIN)/python -m pytest tests/browser
 
+test-languages: .venv/installed  ## Run the compiled solver from C, Fortran and Octave, and all compiled functions by Clang; needs gfortran, octave-dev and clang
+	$(BIN)/python -m pytest tests/compiled/test_single_file.py
+	CC=clang $(BIN)/python -m pytest tests/compiled
+
 verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine, numbers under several kernels of OpenBLAS, packages and site
 	$(BIN)/python -m derive --check
 	$(BIN)/python -m pytest tests/verify $(PARALLEL)
@@ -106,7 +110,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test test-browser verify verify-versions verify-environments regenerate-equations lint audit notebooks lab drawings figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
+.PHONY: demo test test-browser test-languages verify verify-versions verify-environments regenerate-equations lint audit notebooks lab drawings figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml generated/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

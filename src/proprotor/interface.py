@@ -22,6 +22,7 @@ from proprotor.errors import InputError
 from proprotor.exchange.dmig import save_dmig
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
+from proprotor.explore.notebook import explore
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.mount import mount
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
@@ -52,6 +53,7 @@ from proprotor.stability.envelope import envelope
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.growth_constraint import growth_constraint
 from proprotor.study import sampling
+from proprotor.study.robust_boundary import robust_boundary
 from proprotor.study.study import study
 from proprotor.study.study_file import save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
@@ -92,6 +94,7 @@ __all__ = [
     "discrete_gust",
     "distribution",
     "envelope",
+    "explore",
     "frequency_response",
     "growth_constraint",
     "gust_response",
@@ -106,6 +109,7 @@ __all__ = [
     "read_record",
     "rigid_propeller",
     "rigid_support",
+    "robust_boundary",
     "rotor_model",
     "sampling",
     "save_dmig",

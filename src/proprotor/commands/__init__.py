@@ -8,6 +8,7 @@ and show its result; they compute nothing themselves.
     arguments   arguments and options that several commands share; `Request`, the case and options a user asks for
     output      tables, JSON, files and figures; `Outputs`, the files a user asks for
     terminal    the console on which commands print
+    worst_of    the option --worst-of of the command boundary
     waiting     a spinner while a step takes more than a second
 
     cases new describe                              decks

@@ -19,6 +19,7 @@ from click.types import FloatParamType, StringParamType
 
 from proprotor.case import Case, list_cases, load_case
 from proprotor.commands.exit_codes import EXIT_CODES
+from proprotor.commands.waiting import waiting
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
@@ -40,6 +41,7 @@ _MODEL = (
     *_FLIGHT,
     "locked",
 )  # the options of the model, in the order in which results list them
+_OF_DECK = " of deck"
 _RANGE = re.compile(r"(?:[\d.:+\s-]|[eE](?=[\d+-]))*")  # the characters of a range; the unit follows them
 
 
@@ -67,7 +69,8 @@ class Request(NamedTuple):
         InputError
             For a deck or field that cannot be used.
         """
-        return load_case(self.name, self.settings)
+        with waiting("Reading the deck"):
+            return load_case(self.name, self.settings)
 
 
 class Angle(FloatParamType):
@@ -223,6 +226,27 @@ def name_and_value(option: str, text: str, rule: str) -> tuple[str, str]:
     if not name or not value:
         raise InputError(option, text, rule)
     return name, value
+
+
+def limits(option: str, whole: str, text: str) -> Any:
+    """Return the limits of an input: of ``"1:4 deg"``, or of ``"0.9:1.1 of deck"`` as factors of the deck's value.
+
+    Raises
+    ------
+    InputError
+        For anything else, with the whole text that the option was given.
+    """
+    low, colon, high = text.removesuffix(_OF_DECK).strip().partition(":")
+    if not colon or ":" in high:
+        raise InputError(option, whole, 'must have two limits, such as "rotor.precone=1:4 deg"')
+    if not text.endswith(_OF_DECK):
+        return f"{low.strip()} {unit_of(high)}", high.strip()
+    from proprotor.study.sampling import Relative  # here, because most commands sample nothing
+
+    try:
+        return Relative(float(low), float(high))
+    except ValueError:
+        raise InputError(option, whole, 'must have two factors, such as "0.9:1.1 of deck"') from None
 
 
 def scan_option(command: Command) -> Command:

@@ -1,4 +1,4 @@
-"""The command `proprotor boundary`: the airspeed of each boundary against altitude, rotor speed or another input."""
+"""The command `proprotor boundary`: boundaries against an input such as altitude, or the worst of a box of inputs."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
+from proprotor.commands.worst_of import write_worst_of
 from proprotor.deck.vary import check_input, design_inputs
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubts_along
@@ -28,16 +30,24 @@ from proprotor.units import KEAS, KTAS, factor_to_si, is_equivalent, speeds, val
 
 _EXAMPLE = '"operation.rotor_speed=300:610:20 rpm"'
 _OPERATION = "operation."
+_OF_AGAINST = ("against", "mode", "first", "all_boundaries", "speed_unit", "level", "points", "plot")
 
 
 @arguments.command()
 @arguments.case_argument
 @click.option(
     "--against",
-    required=True,
     type=arguments.InputValues(),
     metavar="INPUT=RANGE",
     help=f'Input by deck path, and its values: {_EXAMPLE}, "altitude=0:20000:2000 ft".',
+)
+@click.option(
+    "--worst-of",
+    multiple=True,
+    type=arguments.InputValues(),
+    metavar="INPUT=LIMITS",
+    help='In place of --against: an input and its limits, "rotor.precone=1:4 deg" or "=0.9:1.1 of deck". Repeatable; '
+    "the lowest flutter speed between all limits is looked for.",
 )
 @arguments.scan_option
 @click.option("--mode", help="Show the boundaries of this mode alone.")
@@ -61,7 +71,8 @@ _OPERATION = "operation."
 def boundary(
     request: arguments.Request,
     outputs: output.Outputs,
-    against: str,
+    against: str | None,
+    worst_of: tuple[str, ...],
     scan: str | None,
     mode: str | None,
     first: bool,
@@ -78,12 +89,22 @@ def boundary(
     --all-boundaries. A deck that gives the air by density and speed of sound is taken to an altitude in the standard
     atmosphere by --against altitude=...
 
+    With --worst-of the lowest flutter speed of all designs between some limits is looked for: at the corners, at
+    designs inside, and down along derivatives from the lowest design of each mode. A search is no proof.
+
     \b
     Examples:
       proprotor boundary xv15 --against "operation.rotor_speed=300:610:20 rpm" --plot boundary.png
       proprotor boundary xv15 --against "altitude=0:20000:2000 ft" --scan 200:450:10keas --mode chord
       proprotor boundary my.toml --against "rotor_speed=400:600:20 rpm" --points measured.csv --plot boundary.png
+      proprotor boundary xv15 --worst-of "rotor.precone=1:4 deg" --worst-of "rotor.control_stiffness=0.7:1.5 of deck"
     """
+    if worst_of:
+        _check_alone()
+        write_worst_of(request, outputs, worst_of, scan)
+        return
+    if against is None:
+        raise InputError("--against", None, f"must be given, such as {_EXAMPLE}, or --worst-of in its place")
     if mode and first:
         raise InputError("--first", None, "goes without --mode")
     case, path, given = _case_and_input(request, against)
@@ -114,6 +135,15 @@ def boundary(
     )
     if not (found.searched.values > 0).any():
         raise click.exceptions.Exit(1)
+
+
+def _check_alone() -> None:
+    """Refuse options that say what is shown of boundaries against an input, beside --worst-of."""
+    context = click.get_current_context()
+    for option in context.command.params:
+        given = context.get_parameter_source(str(option.name)) is ParameterSource.COMMANDLINE
+        if given and option.name in _OF_AGAINST:
+            raise InputError(option.opts[0], None, "goes without --worst-of")
 
 
 def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str, str]:
@@ -174,7 +204,7 @@ def _print(case: Case, shown: Dataset, left_out: Sequence[str], unit: str) -> No
     failures = dict.fromkeys(reason for reason in shown.reason.values.tolist() if reason)
     for reason in failures:
         values = [r for r in records if r["failure"] == reason]
-        out.print(f"Not analysed at {next(iter(values[0].values())):g} {unit}: {reason}.", soft_wrap=True)
+        out.print(f"Not analysed at {next(iter(values[0].values())):g} {unit}: {reason}.")
     warnings = shown.warning.values
     rows, places = (warnings != "").nonzero()
     if len(rows):

@@ -30,7 +30,6 @@ from proprotor.typing import Dataset
 from proprotor.units import KNOT, KTAS, speeds
 
 _SAMPLES = ("latin-hypercube", "sobol", "saltelli")
-_OF_DECK = " of deck"
 _REASONS = 5  # most frequent reasons of failures that are printed
 _MOST_ROWS = 20  # designs that are printed
 _UNITS = ((1.0, ".2f"), (KNOT, ".1f"))  # of percentiles that are printed: m/s and knots
@@ -211,31 +210,20 @@ def _plan(varied: tuple[str, ...], sample: str | None, size: int, seed: int) -> 
         if path in inputs:
             raise InputError("--vary", text, "must not vary an input twice")
         listed = [value.strip() for value in values.split(",")]
-        inputs[path] = _limits(text, values) if sample else listed if len(listed) > 1 else listed[0]
+        inputs[path] = (
+            arguments.limits("--vary", text, values) if sample else listed if len(listed) > 1 else listed[0]
+        )
     if sample is None:
         return sampling.grid(inputs)
     draw: Callable[..., sampling.Plan] = getattr(sampling, sample.replace("-", "_"))
     return draw(inputs, size, seed)
 
 
-def _limits(whole: str, text: str) -> Any:
-    """Return the limits of ``"1:4 deg"`` or ``"0.9:1.1 of deck"``."""
-    low, colon, high = text.removesuffix(_OF_DECK).strip().partition(":")
-    if not colon or ":" in high:
-        raise InputError("--vary", whole, 'must have two limits, such as "rotor.precone=1:4 deg"')
-    if text.endswith(_OF_DECK):
-        try:
-            return sampling.Relative(float(low), float(high))
-        except ValueError:
-            raise InputError("--vary", whole, 'must have two factors, such as "0.9:1.1 of deck"') from None
-    return f"{low.strip()} {arguments.unit_of(high)}", high.strip()
-
-
 def _print(results: Dataset, table: StudyTable) -> None:
     out, found = output.console(), study_summary(results)
     out.print(f"{found['title']}: {found['points']} points, {found['failed']} failed")
     for text, count in list(found["reasons"].items())[:_REASONS]:
-        out.print(f"  {count} × {text}", soft_wrap=True)
+        out.print_hanging(f"  {count} × ", text)
     if "sample" not in results.attrs:
         _print_designs(table)
     if "flutter_speed" in results:
@@ -299,7 +287,7 @@ def _print_flutter(results: Dataset, found: Mapping[str, Any]) -> None:
     else:
         out.print("no flutter speed was found")
     for text, count in list(found["notes"].items())[:_REASONS]:
-        out.print(f"  {count} × {text}", soft_wrap=True)
+        out.print_hanging(f"  {count} × ", text)
 
 
 def _print_percentiles(results: Dataset) -> None:

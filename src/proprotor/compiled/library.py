@@ -76,6 +76,17 @@ def library() -> ctypes.CDLL:
         raise Unavailable(f"the compiled library cannot be loaded: {error}; {_HELP}") from None
 
 
+def compiler_version() -> str:
+    """Return what the C compiler says of its version.
+
+    Raises
+    ------
+    Unavailable
+        Without a C compiler.
+    """
+    return _version_of(_compiler()).decode(errors="replace")
+
+
 def cache_folder() -> Path:
     """Return the folder of compiled libraries: that of the variable PROPROTOR_CACHE, or the user's cache.
 
@@ -104,8 +115,12 @@ def _compiler() -> tuple[str, ...]:
         command = tuple(shlex.split(given)) or ("cc",)
     except ValueError as error:
         raise Unavailable(f"there is no C compiler: the variable CC is {given}: {error}") from None
-    _output_of((*command, "--version"), "there is no C compiler")
+    _version_of(command)
     return command
+
+
+def _version_of(compiler: tuple[str, ...]) -> bytes:
+    return _output_of((*compiler, "--version"), "there is no C compiler")
 
 
 def _own_processor(compiler: tuple[str, ...]) -> tuple[str, ...]:
@@ -124,7 +139,7 @@ def _key(compiler: tuple[str, ...], flags: tuple[str, ...]) -> str:
     digest = hashlib.sha256()
     for source in (*_sources("h"), *_sources("c"), *GENERATED.glob("*.h")):
         digest.update(source.name.encode() + source.read_bytes())
-    digest.update(_output_of((*compiler, "--version"), "there is no C compiler"))
+    digest.update(_version_of(compiler))
     # The compiler's own constants name the instructions that it may use.
     constants = (*flags[len(_FLAGS) :], "-dM", "-E", "-x", "c", os.devnull)
     digest.update(_output_of((*compiler, *constants), "the C compiler fails"))

@@ -1,4 +1,4 @@
-"""A fingerprint of the text of all modules that a result can depend on.
+"""A fingerprint of the text of all modules that a result can depend on, those that are compiled included.
 
 A version number is not enough: between two versions the code changes, and results with the code.
 """
@@ -17,15 +17,16 @@ from proprotor.errors import InputError
 
 _IMPORTED = time.time()
 _PACKAGES = (Path(__file__).parents[1], Path(proprotor_equations.__file__).parent)
+_CODE = (".py", ".c", ".h")
 SHOWING = ("commands", "explore", "plots", "report")  # rooms that only show results: no study imports them
 
 
 def modules() -> Iterator[tuple[str, Path]]:
-    """Yield name and path of every module that a result depends on, in the package and in the generated equations."""
+    """Yield name and path of all code that a result depends on, in the package and in the generated equations."""
     for package in _PACKAGES:
-        for path in sorted(package.rglob("*.py")):
+        for path in sorted(package.rglob("*.*")):
             within = path.relative_to(package)
-            if within.parts[0] not in SHOWING:
+            if path.suffix in _CODE and within.parts[0] not in SHOWING:
                 yield f"{package.name}/{within.as_posix()}", path
 
 

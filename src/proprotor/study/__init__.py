@@ -13,6 +13,7 @@ description         what a study was asked, as plain data in the attributes of i
 study_file          files of studies: `save_study`, and the arguments of a study to repeat
 division            how many points a batch has, so that all batches at work fit into memory
 variables           the quantities of a study, their variables, and empty arrays for these
+backend             what computes a study: NumPy or compiled functions, the same from the first batch to the last
 batch               the analysis of one batch, with a reason for each design or point that fails
 roots               eigenvalues of a batch, mode shapes, the least stable mode
 followed_modes      modes of a batch, followed along the airspeeds of each design
@@ -23,6 +24,9 @@ worker              what a worker process does
 checkpoint          finished batches in a folder, from which a study that was killed goes on
 progress            the progress bar
 uncertainty         percentiles and Sobol indices of a result over a sample
+box                 a box of inputs, each between two limits
+box_search          the search of a box: designs in batches, then descents along derivatives
+robust_boundary     the worst flutter speed of a box of inputs
 damping             damping of a mode of the support along the airspeeds
 ==================  ====================================================================================
 
@@ -32,6 +36,7 @@ May import the engine, `deck`, `stability` and `case`.
 from proprotor.study import sampling
 from proprotor.study.damping import mode_damping
 from proprotor.study.designs import AIRSPEED
+from proprotor.study.robust_boundary import robust_boundary
 from proprotor.study.study import study
 from proprotor.study.study_file import is_study_file, read_study, repeated, save_study
 from proprotor.study.uncertainty import distribution, share_below, sobol_indices
@@ -47,6 +52,7 @@ __all__ = [
     "mode_damping",
     "read_study",
     "repeated",
+    "robust_boundary",
     "sampling",
     "save_study",
     "share_below",

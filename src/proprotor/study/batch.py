@@ -21,6 +21,7 @@ from proprotor.model.first_order import in_one_axis, missing_roots
 from proprotor.model.linear_model import LinearModel
 from proprotor.stability.kinds import flies_free
 from proprotor.stability.modes import eigenvalues, few_spectra
+from proprotor.study.backend import check_backend
 from proprotor.study.designs import AIRSPEED
 from proprotor.study.flutter_speeds import put_flutter_speeds
 from proprotor.study.followed_modes import doubted, modes_along, walk
@@ -104,10 +105,11 @@ class Analysis:
         Raises
         ------
         InputError
-            When this process runs other code than `code`.
+            When this process runs other code than `code`, or has no compiled functions for a study that has them.
         """
         if self.code:
             check_code(self.code)
+        check_backend(self.options)
         keep_memory()
         found = blank(self.quantities, batch.shape, self.states, len(self.dofs))
         if "flutter" in self.quantities:

@@ -26,7 +26,8 @@ from proprotor.errors import InputError
 from proprotor.files.output import write_whole
 from proprotor.typing import Array
 
-_FORMAT = 2
+_FORMAT = 3
+_CODES = " codes"  # after the name of a text: which of its different values stands in each place
 _MANIFEST, _LOCK = "manifest.json", ".held"
 _log = logging.getLogger(__name__)
 _DIGEST = hashlib.sha256().digest_size
@@ -53,7 +54,7 @@ class Checkpoint:
         Parameters
         ----------
         identity : mapping of str
-            A fingerprint of everything that the results depend on, by name.
+            Everything that the results depend on, by name: a fingerprint, or the text itself.
         division : mapping
             How the study is divided into batches.
 
@@ -72,6 +73,14 @@ class Checkpoint:
             division = self._begun(identity, division)
             self._study = json.dumps([dict(identity), division], sort_keys=True).encode()
             yield division
+
+    def begun_with(self, part: str) -> str:
+        """Return a part of the identity with which a study in the folder was begun; empty without one."""
+        try:
+            manifest = json.loads((self.folder / _MANIFEST).read_text(encoding="utf-8"))
+            return str(manifest["identity"].get(part, ""))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):  # `open` says what is wrong
+            return ""
 
     @contextmanager
     def _hold(self) -> Iterator[None]:
@@ -131,9 +140,12 @@ class Checkpoint:
     def save(self, number: int, found: Mapping[str, Array]) -> None:
         """Keep a finished batch."""
         content = io.BytesIO()
-        # Texts have a fixed width in the file, which needs no pickle.
-        texts: Any = {name: array.astype(str) for name, array in found.items() if array.dtype == object}
-        np.savez(content, **dict(found) | texts)
+        arrays = {name: array for name, array in found.items() if array.dtype != object}
+        for name in found.keys() - arrays.keys():
+            # Each text once: all have the width of the longest in the file, which needs no pickle.
+            values, codes = np.unique(found[name].astype(str), return_inverse=True)
+            arrays |= {name: values, f"{name}{_CODES}": codes.reshape(found[name].shape).astype(np.int32)}
+        np.savez(content, **arrays)  # type: ignore[arg-type]
         payload = content.getbuffer()
         digest = self._digest(number, payload)
         write_whole(self._place(number), lambda file: file.writelines((digest, payload)))
@@ -159,12 +171,18 @@ class Checkpoint:
             if self._digest(number, payload) == digest:
                 with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
                     arrays = dict(stored)
-                texts = [name for name, array in arrays.items() if array.dtype.kind == "U"]
                 _log.info("found batch %d of %d in %s", number, count, self.folder)
-                yield number, arrays | {name: arrays[name].astype(object) for name in texts}
+                yield number, _with_texts(arrays)
             else:
                 warn(f"{place} is damaged: the batch is computed again", stacklevel=2)
                 place.unlink()
 
     def _place(self, number: int) -> Path:
         return self.folder / f"batch-{number:08d}"
+
+
+def _with_texts(stored: Mapping[str, Array]) -> dict[str, Array]:
+    """Return stored arrays, the texts among them in their places."""
+    texts = [name for name in stored if f"{name}{_CODES}" in stored]
+    plain = {name: array for name, array in stored.items() if not name.endswith(_CODES)}
+    return plain | {name: stored[name].astype(object)[stored[f"{name}{_CODES}"]] for name in texts}

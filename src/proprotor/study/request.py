@@ -11,6 +11,7 @@ import numpy as np
 from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.case import Case
+from proprotor.compiled.library import compiler_version
 from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
@@ -60,22 +61,25 @@ class Request:
 
     @property
     def identity(self) -> dict[str, str]:
-        """Fingerprints of everything that the results depend on."""
+        """Fingerprints of everything that the results depend on, and the backend by its name."""
         from importlib.metadata import version
 
         analysis = self.analysis
+        options = dict(analysis.options)
+        backend = options.pop("backend", "")
         packages = ("proprotor", "numpy", "scipy", "fluids")
+        compilers = [compiler_version()] if backend == "compiled" else []
         parts = {
             "case": analysis.case,
             "inputs": [self.designs.values, self.designs.axes],
             "airspeeds": self.airspeed,
             "quantities": analysis.quantities,
-            "options": dict(analysis.options),
+            "options": options,
             "tolerance": analysis.tolerance,
             "code": analysis.code,
-            "versions": [version(package) for package in packages],
+            "versions": [version(package) for package in packages] + compilers,
         }
-        return {name: fingerprint(part, name) for name, part in parts.items()}
+        return {name: fingerprint(part, name) for name, part in parts.items()} | {"backend": backend}
 
     @property
     def size(self) -> float:
@@ -131,8 +135,9 @@ def requested(
     tolerance: Any,
     options: Mapping[str, Any],
     code: str,
+    backend: str,
 ) -> Request:
-    """Return the request that the arguments of `proprotor.study` make.
+    """Return the request that the arguments of `proprotor.study` make, to be computed by a backend.
 
     Raises
     ------
@@ -140,7 +145,8 @@ def requested(
         For an unknown input, quantity or option, a value with a wrong unit, or airspeeds that the quantities refuse.
     """
     quantities = _known_quantities(quantities)
-    parse_options(case.model_options(options))
+    computed = {**options, "backend": backend}
+    parse_options(case.model_options(computed))
     plan = as_plan(inputs)
     from proprotor.deck.vary import design_inputs
 
@@ -155,7 +161,7 @@ def requested(
     for name in ALONG_AIRSPEEDS:
         if name in quantities:
             _check_range(speeds, name)
-    analysis = Analysis(case, quantities, options, code=code)
+    analysis = Analysis(case, quantities, computed, code=code)
     if tolerance is not None:
         if not isinstance(tolerance, int | float) or not tolerance > 0:
             raise InputError("tolerance", tolerance, "must be a number above zero")

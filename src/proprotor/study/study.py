@@ -13,6 +13,7 @@ import numpy as np
 from proprotor.case import Case
 from proprotor.files.source_code import code_fingerprint
 from proprotor.study import workers as study_workers
+from proprotor.study.backend import backend_of
 from proprotor.study.checkpoint import Checkpoint
 from proprotor.study.designs import Plan
 from proprotor.study.division import Block, blocks_of, check_needs, points_at_once
@@ -66,7 +67,8 @@ def study(
         A cluster that analyses the batches in place of this computer.
     checkpoint : path, optional
         A folder that keeps each finished batch. The same call goes on where a killed one was, with the same results
-        to the last bit, as long as the code is the same.
+        to the last bit, as long as the code is the same. With ``backend="auto"`` the backend that began the study
+        goes on with it.
     progress : bool or callable, optional
         A progress bar; by default on a terminal (the error stream) and in a notebook. A callable is called with the
         numbers of points that are done, of all points, and of points that failed.
@@ -86,9 +88,9 @@ def study(
     Raises
     ------
     InputError
-        For an unknown input, quantity or option, a value with a wrong unit, a checkpoint of another study or of other
-        code, a cluster that runs other code, or results, batches or workers that do not fit into memory; for a study to
-        repeat that was not written out, or whose deck has changed.
+        For an unknown input, quantity or option, a value with a wrong unit, a checkpoint of another study, of other
+        code or of another backend, a cluster that runs other code, or results, batches or workers that do not fit into
+        memory; for a study to repeat that was not written out, or whose deck has changed.
     """
     given = {"airspeed": airspeed, "tolerance": tolerance} | options
     given |= {} if quantities is DEFAULT_QUANTITIES else {"quantities": quantities}
@@ -101,10 +103,11 @@ def study(
     code = "" if checkpoint is None and client is None else code_fingerprint()
     with ExitStack() as held:
         told = held.enter_context(shown_progress(progress))
-        request = requested(case, inputs, airspeed, quantities, tolerance, options, code)
+        kept = None if checkpoint is None else Checkpoint(checkpoint)
+        backend = backend_of(case, options, kept)
+        request = requested(case, inputs, airspeed, quantities, tolerance, options, code, backend)
         check_needs(request, batch, workers, client)
         division = {"points": batch or points_at_once(request, workers, client)}
-        kept = None if checkpoint is None else Checkpoint(checkpoint)
         if kept:
             division = held.enter_context(kept.open(request.identity, division))
         request = request.with_coordinates()

@@ -4,8 +4,10 @@ Each of the three is a generator that takes numbered batches and yields pairs (n
 order, and never holds more than a few batches.
 
 Processes and not threads, because most of the time beside LAPACK is spent in short NumPy calls that hold the
-interpreter. Each process has one BLAS thread, because matrices of this size gain nothing from more, and threads that
-share one BLAS wait for each other.
+interpreter. Compiled functions leave it to others, but it is held for more than a third of the time that points take
+then, and for three quarters of the time of flutter speeds (`python -m benchmarks.study` measures it). Each process has
+one BLAS thread, because matrices of this size gain nothing from more, and threads that share one BLAS wait for each
+other.
 """
 
 from __future__ import annotations

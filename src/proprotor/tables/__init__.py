@@ -10,6 +10,7 @@ sensitivity_summary   sensitivities as records
 study_summary         a study in a few numbers
 study_table           a study as records: one for each design, with its inputs in the units of the deck
 percentiles           percentiles of a sample as text, with bounds where designs lie beyond the airspeeds
+robust_table          the worst flutter speed of a box: records, cells and sentences
 csv_text              records of any kind as CSV
 blade_table           the hinged blade of a table of stations: fields, comparison, lines of a deck
 boundary_table        boundaries against an input: records and lines
@@ -37,6 +38,7 @@ __all__ = [
     "points",
     "record_table",
     "response_table",
+    "robust_table",
     "sensitivity_summary",
     "study_summary",
     "study_table",
