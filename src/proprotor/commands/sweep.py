@@ -103,5 +103,5 @@ def _print(case: Case, name: str, table: SweepTable, all_modes: bool) -> None:
 
 
 def _shortened(text: str, name: str, width: int) -> str:
-    """Return about two lines of a warning, and the command that prints the whole of it; `name` is of a deck or its file."""
+    """Return about two lines of a warning, and the command that prints all of it; `name` is of a deck or its file."""
     return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {shlex.quote(name)})")
