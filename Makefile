@@ -13,6 +13,10 @@ test: .venv/installed  ## Run the tests
 test-browser: .venv/installed  ## Move the sliders of `proprotor explore` in a real browser; needs Chromium and its driver
 	$(BIN)/python -m pytest tests/browser
 
+test-languages: .venv/installed  ## Run the compiled solver from C, Fortran and Octave, and all compiled functions by Clang; needs gfortran, octave-dev and clang
+	$(BIN)/python -m pytest tests/compiled/test_single_file.py
+	CC=clang $(BIN)/python -m pytest tests/compiled
+
 verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine, numbers under several kernels of OpenBLAS, packages and site
 	$(BIN)/python -m derive --check
 	$(BIN)/python -m pytest tests/verify $(PARALLEL)
@@ -40,6 +44,10 @@ notebooks: .venv/installed  ## Run the audit's notebooks and render them into do
 	$(BIN)/python -m derive.pages.notebooks
 	$(BIN)/python -m derive.pages.index
 
+lab: .venv/installed  ## Open the audit's notebooks in JupyterLab, to change a cell and run it again
+	$(BIN)/python -m pip install --group lab
+	PYTHONPATH="$(CURDIR)" $(BIN)/python -m jupyter lab notebooks
+
 figures: .venv/installed  ## Make every analytical figure of the paper, with its numbers, in figures/
 	$(BIN)/python -m benchmarks.paper_figures --out figures
 
@@ -51,6 +59,9 @@ audit: .venv/installed  ## Judge every equation of the paper against the derivat
 
 gallery: .venv/installed  ## Draw the pictures of docs/plots.md
 	$(BIN)/python -m benchmarks.gallery
+
+examples: .venv/installed  ## Run the examples, draw their pictures and write their notebooks and page
+	$(BIN)/python -m benchmarks.examples
 
 docs: .venv/docs-installed  ## Build the documentation site, docs/_build/html/index.html
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
@@ -95,7 +106,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test test-browser verify verify-versions verify-environments regenerate-equations lint audit notebooks figures validation gallery docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
+.PHONY: demo test test-browser test-languages verify verify-versions verify-environments regenerate-equations lint audit notebooks lab figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml generated/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

@@ -20,7 +20,7 @@ extensions = [
     "plain_text",
     "source_pages",
 ]
-exclude_patterns = ["_build", "extensions", "templates"]
+exclude_patterns = ["_build", "extensions", "templates", "examples/*.ipynb"]  # the last are to download
 source_suffix = {
     ".rst": "restructuredtext",
     ".md": "myst-nb",

@@ -13,7 +13,8 @@
 # %% [markdown]
 # # 1 Kinematics
 #
-# Eqs. 1–11 of AIAA-2002-1604: where a point of the blade is, and how it accelerates.
+# Eqs. 1–11 of AIAA-2002-1604 (E. L. Hathaway and F. Gandhi, *Modeling Refinements in Simple Tiltrotor Aeroelastic
+# Stability Analyses*): where a point of the blade is, and how it accelerates.
 #
 # The derivation starts from one position vector (`derive/kinematics.py`) and nothing else. Each equation
 # below stands beside what that vector gives to the paper's own order: first order in the cone
@@ -138,6 +139,31 @@ equation(11)
 
 # %%
 rest_of_rigid_tilt()
+
+# %% [markdown]
+# ## The chain, for you to change
+#
+# Eq. 3 in a dozen lines: the position of a point, differentiated twice in axes that turn with $\Omega$. Change a
+# sign, run the cell, and the line below it lists the terms that contradict the derivation. With
+# `velocity = rate(position) - spin.cross(position)`, for instance, axes turn the wrong way for the first derivative
+# and the right way for the second, and nearly every term of $\Omega$ is wrong. Every `+` and `-` of the cell
+# changes the verdict; a test tries them all. [How to open a notebook](../docs/howto/lessons.md).
+
+# %% tags=["chain"]
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.pages.chain import first_order, moving, rate
+from derive.pages.display import chain
+
+r, e_flap, e_lag = s.radial_station, s.flap_hinge_offset, s.lag_hinge_offset
+outward = kin.flapped(s.precone + s.coning + kin.q["flap"])  # along the blade, flapped
+swing = kin.lagged(outward, kin.q["lag"]) - outward
+blade = e_flap * kin.flapped(s.precone) + (r - e_flap) * outward + (r - e_lag) * swing
+position = moving(kin.GIMBAL_TILT * kin.rotation(kin.q["azimuth"] * kin.K_AXIS) * blade)
+spin = s.rotor_speed * kin.K_AXIS
+velocity = rate(position) + spin.cross(position)
+acceleration = rate(velocity) + spin.cross(velocity)
+chain(3, dict(zip("ijk", map(first_order, acceleration), strict=True)))
 
 # %% [markdown]
 # Next: [2 Inertia](2-inertia.py)

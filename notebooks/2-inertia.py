@@ -85,4 +85,34 @@ equation("ν_ζ")
 equation(23)
 
 # %% [markdown]
+# ## The chain, for you to change
+#
+# Eq. 13 from the position: two derivatives with time give the acceleration, one with the flap angle the direction
+# in which the blade may move, and an integral over the mass their work. The springs of [notebook
+# 3](3-springs.py) are added. Change a sign, run the cell, and the line below it lists the terms that contradict the
+# derivation: try the lag angle, `-kin.q["lag"]`, and then look which terms of Eq. 13 above the change turns round.
+# [How to open a notebook](../docs/howto/lessons.md).
+
+# %% tags=["chain"]
+from derive import flap_lag_springs
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.inertia import MASS_INTEGRALS, integrate_mass
+from derive.pages.chain import by_azimuth, moving, perturbation, rate, times_motion
+from derive.pages.display import chain
+
+outward = kin.flapped(s.precone + s.coning + kin.q["flap"])
+swing = kin.lagged(outward, kin.q["lag"]) - outward
+blade = kin.inboard_arm * kin.flapped(s.precone) + kin.outboard_arm * outward + kin.lag_arm * swing
+point = kin.HUB + kin.BLADE_TO_ROTATING * blade
+spin = s.rotor_speed * kin.K_AXIS
+position = moving(point)
+velocity = rate(position) + spin.cross(position)
+acceleration = rate(velocity) + spin.cross(velocity)
+work = moving(point.diff(kin.q["flap"])).dot(acceleration)
+flap_row = integrate_mass(perturbation(work), MASS_INTEGRALS)
+flap_row += times_motion(lambda name: flap_lag_springs.stiffness("flap", name))
+chain(13, {"inertia and springs": by_azimuth(flap_row) / (s.blade_inertia * s.rotor_speed**2)})
+
+# %% [markdown]
 # Next: [3 Springs](3-springs.py)

@@ -124,4 +124,35 @@ equation(30)
 equation(31)
 
 # %% [markdown]
+# ## The chain, for you to change
+#
+# Eqs. 21 and 22 from the places of four springs: two along the axes of the hub, two along those of a blade that has
+# turned by $\vartheta$. A load does work on a spring in proportion to its component along that spring. The second
+# derivatives of the energy are the flexibility, and its inverse is the effective stiffness. Change a sign, run the
+# cells, and the lines below them list the terms that contradict the derivation. [How to open a
+# notebook](../docs/howto/lessons.md).
+
+# %% tags=["chain"]
+import sympy as sp
+
+from derive import flap_lag_springs
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.pages.display import chain
+
+K_flap, R_flap = s.flap_stiffness, s.flap_outboard_fraction
+K_lag, R_lag = s.lag_stiffness, s.lag_outboard_fraction
+turn = sp.rot_ccw_axis2(s.structural_pitch)  # about the span, nose up
+moments = sp.symbols("M_flap M_lag")
+load = moments[0] * kin.K_AXIS + moments[1] * kin.I_AXIS
+hub = (1 - R_flap) / K_flap * load.dot(kin.K_AXIS) ** 2 + (1 - R_lag) / K_lag * load.dot(kin.I_AXIS) ** 2
+flatwise, edgewise = load.dot(turn * kin.K_AXIS), load.dot(turn * kin.I_AXIS)
+flexibility = sp.hessian((hub + R_flap / K_flap * flatwise**2 + R_lag / K_lag * edgewise**2) / 2, moments)
+chain(22, {"Δ": flexibility.det() * K_flap * K_lag})
+
+# %% tags=["chain"]
+stiffness = flexibility.adjugate() * K_flap * K_lag / flap_lag_springs.series_determinant
+chain(21, {"K_ββ": stiffness[0, 0], "K_ζζ": stiffness[1, 1], "K_βζ": stiffness[0, 1]})
+
+# %% [markdown]
 # Next: [4 Airloads](4-airloads.py)

@@ -72,4 +72,31 @@ Picture(figures.lag_frequency)
 Picture(figures.published_and_consistent)
 
 # %% [markdown]
+# ## The chain, for you to change
+#
+# Eqs. 14 and 15 from the position: its derivative with time is the velocity of a section through the air, and its
+# derivatives with lag and flap are the directions of the chord and of the normal. The integral of the loads that
+# follow is not in the paper, so the audit has nothing to compare it with. Change a sign, run the cells, and the
+# lines below them list the terms that contradict the derivation. [How to open a notebook](../docs/howto/lessons.md).
+
+# %% tags=["chain"]
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.pages.chain import moving, perturbation, rate
+from derive.pages.display import chain
+
+r, e_flap, e_lag = s.radial_station, s.flap_hinge_offset, s.lag_hinge_offset
+outward = kin.flapped(s.precone + s.coning + kin.q["flap"])
+lagged = kin.lagged(outward, kin.q["lag"])
+blade = e_flap * kin.flapped(s.precone) + (r - e_flap) * outward + (r - e_lag) * (lagged - outward)
+position = moving(kin.HUB + kin.BLADE_TO_ROTATING * blade)
+velocity = rate(position) + s.rotor_speed * kin.K_AXIS.cross(position) + s.airspeed * kin.K_AXIS
+chord = moving(kin.BLADE_TO_ROTATING * lagged.diff(kin.q["lag"]))  # towards the trailing edge
+chain(14, {"δu_T": perturbation(-chord.dot(velocity))})
+
+# %% tags=["chain"]
+normal = moving(kin.BLADE_TO_ROTATING * outward.diff(kin.q["flap"]))
+chain(15, {"δu_P": perturbation(normal.dot(velocity))})
+
+# %% [markdown]
 # Next: [5 Pitch and couplings](5-pitch-and-couplings.py)

@@ -96,4 +96,34 @@ Picture(figures.couplings_against_collective)
 Picture(figures.damping_by_coupling_sign)
 
 # %% [markdown]
+# ## The chain, for you to change
+#
+# Eqs. 36 and 37 from where the blade's springs are at pitch $\vartheta$: the derivative of their energy with
+# pitch, the loads held, is the moment with which a bent blade turns itself, and the control system alone resists it.
+# Change a sign, run the cells, and the lines below them list the terms that contradict the derivation: turn the
+# sign of `twist`, and both couplings turn round, as after Eq. 35 by its word. [How to open a
+# notebook](../docs/howto/lessons.md).
+
+# %% tags=["chain"]
+import sympy as sp
+
+from derive import kinematics as kin
+from derive import symbols as s
+from derive.audit.printed import notation as n
+from derive.flap_lag_springs import STIFFNESS
+from derive.pages.display import chain
+
+turn = sp.rot_ccw_axis2(s.structural_pitch)  # about the span, nose up
+load = n.M_beta * kin.K_AXIS + n.M_zeta * kin.I_AXIS
+flatwise, edgewise = load.dot(turn * kin.K_AXIS), load.dot(turn * kin.I_AXIS)
+energy = (flatwise**2 / n.K_beta_B + edgewise**2 / n.K_zeta_B) / 2
+K_bb, K_bz, K_zz = (STIFFNESS[pair] for pair in (("flap", "flap", 0), ("flap", "lag", 0), ("lag", "lag", 0)))
+bent = {n.M_beta: K_bb * s.coning + K_bz * s.lag, n.M_zeta: K_bz * s.coning + K_zz * s.lag}
+twist = energy.diff(s.structural_pitch).subs(bent) / s.control_stiffness
+chain(36, {"K_Pβ": -twist.diff(s.coning)})
+
+# %% tags=["chain"]
+chain(37, {"K_Pζ": -twist.diff(s.lag)})
+
+# %% [markdown]
 # Next: [6 Assembly and errata](6-assembly-and-errata.py)

@@ -118,6 +118,33 @@ dropped_terms()
 Picture(figures.boundaries_without_terms)
 
 # %% [markdown]
+# ## The chain, for you to change
+#
+# From one blade to the rotor, for an angle in three multiblade coordinates: its place at azimuth $\psi$, two
+# derivatives with time while $\psi$ advances with $\Omega$, and the mean of each row over the azimuth. The rows of
+# $\beta_{1C}$ and $\beta_{1S}$ get the coupling $\pm 2\Omega$ and the stiffness $-\Omega^2$ by which a rotor differs
+# from its blades. Change a sign, run the cell, and the line below it lists the terms that contradict the
+# derivation. [How to open a notebook](../docs/howto/lessons.md).
+
+# %% tags=["chain"]
+import sympy as sp
+
+from derive import symbols as s
+from derive.audit.counterparts import time_derivative
+from derive.multiblade import psi
+from derive.pages.chain import MULTIBLADE_ANGLE, rotor_rows
+from derive.pages.display import chain
+
+mass, damping, stiffness = sp.symbols("m c k")  # of one blade
+waves = {"flap_0": sp.Integer(1), "flap_1c": sp.cos(psi), "flap_1s": sp.sin(psi)}
+angle = sum(MULTIBLADE_ANGLE[name] * wave for name, wave in waves.items())
+rate = time_derivative(angle)
+moment = mass * time_derivative(rate) + damping * rate + stiffness * angle
+means = {name: sp.integrate(sp.expand(wave * moment), (psi, 0, 2 * sp.pi)) for name, wave in waves.items()}
+rows = {name: s.n_blades * mean / (2 * sp.pi) for name, mean in means.items()}
+chain("Flap of the rotor", rows, rotor_rows(waves, mass, damping, stiffness))
+
+# %% [markdown]
 # Several inputs of the XV-15 deck are assumed or recalled: differences between boundaries mean something
 # here, the boundary itself is another matter ([the XV-15](../docs/xv15.md)). All verdicts in one table: [the
 # audit](../docs/audit.md).

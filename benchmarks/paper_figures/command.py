@@ -15,6 +15,7 @@ from benchmarks.paper_figures.drawing import save
 from proprotor.commands.exit_codes import EXIT_CODES
 from proprotor.commands.main import errors_as_messages
 from proprotor.commands.output import check_writable, write
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 
 _KINDS = ("png", "csv")
@@ -57,8 +58,9 @@ def figures(numbers: tuple[int, ...], out: str, samples: int, step: float, seed:
             check_number(number)
         folder = _folder(out, wanted)
         analyses = Analyses(step, samples, seed)
-        for number in wanted:
-            content = make_figure(number, analyses)
+        for place, number in enumerate(wanted, start=1):
+            with waiting(f"Figure {number}, {place} of {len(wanted)}"):
+                content = make_figure(number, analyses)
             write("--out", _place(folder, number, "png"), partial(save, content))
             write("--out", _place(folder, number, "csv"), csv_of(content))
 

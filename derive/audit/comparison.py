@@ -8,7 +8,7 @@ and each term that still differs gets a verdict.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import sympy as sp
@@ -131,6 +131,20 @@ def audit(equation: PrintedEquation) -> EquationVerdict:
     for part in equation.parts:
         verdicts += _judged(equation, part, printed_terms(equation, part), derived[part])
     return EquationVerdict(equation, tuple(verdicts))
+
+
+def audit_chain(found: Mapping[str, sp.Expr], derived: Mapping[str, Terms]) -> tuple[TermVerdict, ...]:
+    """Judge every term of what a reader found in place of the print: the derivation has it, or contradicts it."""
+    verdicts: list[TermVerdict] = []
+    for part, expression in found.items():
+        agreed, own, others = _agreement(terms_of(sp.sympify(expression)), derived[part])
+        zero = sp.Integer(0)
+        verdicts += [TermVerdict(part, term, number, number, REPRODUCED) for term, number in agreed.items()]
+        verdicts += [
+            TermVerdict(part, term, own.get(term, zero), others.get(term, zero), CONTRADICTS)
+            for term in sorted({*own, *others}, key=sp.default_sort_key)
+        ]
+    return tuple(verdicts)
 
 
 def _judged(equation: PrintedEquation, part: str, printed: Terms, derived: Terms) -> Iterator[TermVerdict]:

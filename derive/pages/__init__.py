@@ -6,6 +6,7 @@ written by a command.
 | module | what it makes |
 |---|---|
 | `display` | an equation, a table or a list as a notebook shows it |
+| `chain` | the tools of the cells that a reader may change |
 | `figures` | pictures of the notebooks |
 | `notebooks` | docs/notebooks, by ``python -m derive.pages.notebooks`` |
 | `index` | docs/equations.md, by ``python -m derive.pages.index`` |
@@ -14,4 +15,4 @@ written by a command.
 The modules may import anything of `derive`. Nothing else in `derive` imports them.
 """
 
-__all__ = ["display", "figures", "glossary", "index", "notebooks"]
+__all__ = ["chain", "display", "figures", "glossary", "index", "notebooks"]

@@ -25,6 +25,9 @@ from derive.audit.comparison import (
     VERDICTS,
     EquationVerdict,
     TermVerdict,
+    audit_chain,
+    derived_terms,
+    terms_of,
 )
 from derive.audit.counterparts import meaning
 from derive.audit.headings import anchor, heading
@@ -320,6 +323,35 @@ def equation(number: int | str) -> Shown:
     broken = [finding for finding in report.broken_invariants().get(number, [])] if result.conflicts else []
     blocks += [f"Breaks **{finding.invariant}**: {_in_notation(finding.evidence)}." for finding in broken]
     return Shown("\n\n".join(blocks))
+
+
+def chain(
+    name: int | str, found: Mapping[str, sp.Expr], derived: Mapping[str, sp.Expr] | None = None
+) -> Shown:
+    """Show whether a chain of SymPy has every term of the derivation, and print the terms that differ.
+
+    Parameters
+    ----------
+    name : int or str
+        An equation of the paper, whose counterpart is what the derivation has; or any name beside `derived`.
+    found : mapping
+        What the chain gives for each part.
+    derived : mapping, optional
+        What the derivation has for each part.
+    """
+    expected = derived_terms(name) if derived is None else {part: terms_of(e) for part, e in derived.items()}
+    verdicts = audit_chain(found, expected)
+    other = [verdict for verdict in verdicts if verdict.verdict == CONTRADICTS]
+    of = heading(name) if derived is None else str(name)
+    if not other:
+        return Shown(
+            f"{of}, by this chain: all {len(verdicts)} terms are those of the derivation: {REPRODUCED}."
+        )
+    rows = []
+    for part in dict.fromkeys(verdict.part for verdict in other):
+        rows.append((part, *_both([verdict for verdict in other if verdict.part == part])))
+    text = f"{of}, by this chain: {len(other)} of {len(verdicts)} terms differ from the derivation: **{CONTRADICTS}**."
+    return Shown(f"{text}\n\n{rows_of_table(('', 'this chain', 'derived'), rows)}")
 
 
 def _summary(result: EquationVerdict) -> str:

@@ -3,8 +3,8 @@
 python -m derive.pages.notebooks                 all of them
 python -m derive.pages.notebooks 3-springs       some
 
-A page is the notebook's own text, its code, and the Markdown and pictures of its outputs. To work in one of them, start
-Jupyter where `derive` can be imported: PYTHONPATH=. jupyter lab notebooks (with jupytext).
+A page is the notebook's own text, its code, and the Markdown and pictures of its outputs. `make lab` opens the
+notebooks in JupyterLab, where `derive` can be imported and jupytext reads the files as notebooks.
 """
 
 from __future__ import annotations

@@ -65,6 +65,15 @@ class _Package(ModuleType):
     def study(self, room: ModuleType) -> None:
         """Leave the function where the import system sets the room."""
 
+    @property
+    def explore(self) -> Any:
+        """The function, although a room has the same name."""
+        return self.__getattr__("explore")
+
+    @explore.setter
+    def explore(self, room: ModuleType) -> None:
+        """Leave the function where the import system sets the room."""
+
 
 sys.modules[__name__].__class__ = _Package
 logging.getLogger(__name__).addHandler(logging.NullHandler())  # the application says where messages go

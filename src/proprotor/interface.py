@@ -22,6 +22,7 @@ from proprotor.errors import InputError
 from proprotor.exchange.dmig import save_dmig
 from proprotor.exchange.matlab import save_matlab
 from proprotor.exchange.netcdf import load_results, save_results
+from proprotor.explore.notebook import explore
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.mount import mount
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
@@ -93,6 +94,7 @@ __all__ = [
     "discrete_gust",
     "distribution",
     "envelope",
+    "explore",
     "frequency_response",
     "growth_constraint",
     "gust_response",

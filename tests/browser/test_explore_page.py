@@ -4,38 +4,22 @@ Needs Chromium and its driver; `make test-browser` runs this and tells where the
 """
 
 import re
-import shutil
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from selenium import webdriver
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
 import proprotor as pp
 from proprotor.explore.analysis import live_modes
 from proprotor.stability.boundaries import scan_speeds
+from tests.browser.chromium import CHROMIUM, DRIVER, chromium
 from tests.explore_server import serving
 
-CHROMIUM, DRIVER = (
-    shutil.which("chromium") or shutil.which("google-chrome"),
-    shutil.which("chromedriver"),
-)
 PRECONE = "rotor.precone"
 KNOT = 1852 / 3600
-ARGUMENTS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--window-size=1280,800",
-)
 MODEL = "const model = Bokeh.documents[0].get_model_by_name(arguments[0]);"
 
 
@@ -43,13 +27,8 @@ MODEL = "const model = Bokeh.documents[0].get_model_by_name(arguments[0]);"
 def browser(tmp_path_factory):
     if not (CHROMIUM and DRIVER):
         pytest.fail("needs Chromium and its driver: on Debian `apt-get install chromium chromium-driver`")
-    options = webdriver.ChromeOptions()
-    options.binary_location = CHROMIUM
     downloads = tmp_path_factory.mktemp("downloads")
-    for argument in (*ARGUMENTS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(argument)
-    options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+    driver = chromium(str(tmp_path_factory.mktemp("profile")), str(downloads))
     driver.downloads = downloads
     yield driver
     driver.quit()
@@ -77,8 +56,8 @@ def readout(browser):
 
 def damping(browser):
     script = (
-        "const plot = Bokeh.documents[0].get_model_by_name('damping');"
-        "return Array.from(plot.renderers[0].data_source.get_column('damping')[arguments[0]]);"
+        "const lines = Bokeh.documents[0].get_model_by_name('lines');"
+        "return Array.from(lines.get_column('damping')[arguments[0]]);"
     )
     return np.array(browser.execute_script(script, 1))
 
@@ -132,7 +111,7 @@ def test_what_was_set_is_downloaded_as_a_deck_that_runs(page):
         + """
       const view = [...Bokeh.index.all_views()].find((one) => one.model === model);
       view.shadow_el.querySelector("button").click();""",
-        "save",
+        "save Deck (TOML)",
     )
     saved = Path(page.downloads, "xv15-uncoupled-explored.toml")
     wait(page, saved.exists)

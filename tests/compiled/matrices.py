@@ -159,7 +159,7 @@ def normalised(matrices):
     return matrices / size[:, None, None], size
 
 
-def _divided(values, size):
+def divided(values, size):
     """Complex numbers divided part by part, so that the smallest numbers do not overflow."""
     return values.real / size + 1j * (values.imag / size)
 
@@ -168,7 +168,7 @@ def backward_error(matrices, values):
     """Return the largest of the smallest singular values of A - λI over the norm of A, for each matrix."""
     alike, size = normalised(matrices)
     norm = np.linalg.norm(alike, axis=(1, 2))
-    own = _divided(values, size[:, None])
+    own = divided(values, size[:, None])
     moved = alike[:, None] - own[..., None, None] * np.eye(matrices.shape[-1])
     smallest = np.linalg.svd(moved, compute_uv=False)[..., -1].max(axis=1)
     return smallest / np.where(norm == 0, 1, norm)
@@ -178,5 +178,5 @@ def residual(matrices, values, right):
     """Return the largest |A x - λ x| of vectors of length one over the norm of A, for each matrix."""
     alike, size = normalised(matrices)
     norm = np.linalg.norm(alike, axis=(1, 2))
-    left = alike @ right - right * _divided(values, size[:, None])[:, None, :]
+    left = alike @ right - right * divided(values, size[:, None])[:, None, :]
     return np.linalg.norm(left, axis=1).max(axis=1) / np.where(norm == 0, 1, norm)

@@ -44,6 +44,16 @@ import numpy as np
 found = eigvals(np.random.default_rng(0).standard_normal((11, 9, 9)))
 print(json.dumps([[x.real, x.imag] for x in found.ravel().tolist()]))
 """
+MODELS = """
+import json
+import numpy as np
+import proprotor as pp
+from proprotor.model.first_order import state_matrix
+case = pp.load_case("xv15").vary({"rotor.precone": np.linspace(0.0, 0.05, 11)})
+model = case.linearize(np.linspace(60.0, 180.0, 11), backend="compiled")
+found = (*model.matrices.values(), *model.rotor.matrices.values(), model.trim.thrust, state_matrix(model))
+print(json.dumps([part.ravel().tolist() for part in found]))
+"""
 REASON = """
 import json
 from proprotor.compiled.library import why_not
@@ -86,8 +96,9 @@ def test_every_width_of_vectors_has_the_same_bits_and_a_library_of_its_own(tmp_p
         compiler_that_refuses(tmp_path, "native"),
         *(f"{compiler} -DLANES={lanes}" for lanes in (4, 8)),
     )
-    widths = [answer(ROOTS, CC=command, **cache) for command in commands]
-    assert widths[0] == widths[1] == widths[2] == answer(ROOTS)
+    for code in (ROOTS, MODELS):
+        widths = [answer(code, CC=command, **cache) for command in commands]
+        assert widths[0] == widths[1] == widths[2] == answer(code)
     assert len(list((tmp_path / "cache").iterdir())) == 3
 
 

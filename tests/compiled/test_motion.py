@@ -15,22 +15,32 @@ POINTS = 53  # a last vector has fewer points than lanes
 @pytest.mark.parametrize("shared", [False, True])
 def test_a_rotor_on_a_support_is_a_product_of_matrices(modes, shared):
     rng = np.random.default_rng(modes)
-    matrix = rng.standard_normal((POINTS, 9, 9))
+    matrices = [rng.standard_normal((POINTS, 9, columns)) for columns in (9, 9, 9, 4)]
     leading = () if shared else (POINTS,)
-    hub, addition = rng.standard_normal((*leading, 6, modes)), rng.standard_normal((*leading, modes, modes))
+    hub = rng.standard_normal((*leading, 6, modes))
+    additions = [rng.standard_normal((*leading, modes, modes)) for _ in range(3)]
     turn = np.zeros((*leading, 9, modes + 3))
     turn[..., :6, :modes], turn[..., 6:, modes:] = hub, np.eye(3)
-    expected = np.swapaxes(turn, -1, -2) @ matrix @ turn
-    expected[:, :modes, :modes] += addition
-    found = motion.on_support(matrix, hub, addition)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
-    matrix[5, 2, 3] = np.nan
-    again = motion.on_support(matrix, hub, addition)
-    assert np.isnan(again[5]).any() and (np.delete(again, 5, 0) == np.delete(found, 5, 0)).all()
-    assert (
-        motion.on_support(matrix[9:10], *(part if shared else part[9:10] for part in (hub, addition)))
-        == found[9]
-    ).all()
+    back = np.swapaxes(turn, -1, -2)
+    expected = [back @ matrix @ turn for matrix in matrices[:3]] + [back @ matrices[3]]
+    for matrix, addition in zip(expected, additions, strict=False):
+        matrix[:, :modes, :modes] += addition
+    found = motion.on_support(matrices, hub, additions)
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-13 * np.abs(other).max())
+    without = motion.on_support(matrices[:3], hub, additions)
+    assert len(without) == 3 and all((one == other).all() for one, other in zip(without, found, strict=False))
+    for matrix in matrices:
+        matrix[5, 2, 3] = np.nan
+    again = motion.on_support(matrices, hub, additions)
+    alone = motion.on_support(
+        [matrix[9:10] for matrix in matrices],
+        hub if shared else hub[9:10],
+        [part if shared else part[9:10] for part in additions],
+    )
+    for one, other, single in zip(again, found, alone, strict=True):
+        assert np.isnan(one[5]).any() and (np.delete(one, 5, 0) == np.delete(other, 5, 0)).all()
+        assert (single == other[9]).all()
 
 
 def masses(rng, n):

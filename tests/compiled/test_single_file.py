@@ -1,4 +1,4 @@
-"""The solver as one header and one source: examples, return codes, and the interface for Fortran."""
+"""The solver as one header and one source: the same bits in C, Fortran and Octave, examples, codes, and interfaces."""
 
 import ctypes
 import os
@@ -6,6 +6,7 @@ import re
 import shlex
 import shutil
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +19,11 @@ from tests.documentation import DOCS, blocks
 needs_compiler = pytest.mark.skipif("there is no C compiler" in why_not(), reason="there is no C compiler")
 FLAGS = ("-O1", "-std=gnu11", "-ffp-contract=off", "-Wall", "-Wextra", "-Werror")
 DONE, BAD_SIZE = 0, 1
+PROGRAMS, COUNT, N = (
+    Path(__file__).parent / "programs",
+    11,
+    5,
+)  # which read 11 matrices of 5 rows, and 5 motions
 # x'' + 0.2 x' + k x = 0 with k = 4 and 9: -0.1 + i sqrt(k - 0.01)
 ROOTS = ((-0.1, 3.99**0.5), (-0.1, 8.99**0.5))
 
@@ -28,14 +34,7 @@ def example(kind, folder, name):
     return folder / name
 
 
-def compiled(folder, compiler, *flags):
-    """Build `proprotor.c` of a folder with a compiler, and return the command."""
-    command = [*compiler, *flags, "-c", "proprotor.c"]
-    subprocess.run(command, cwd=folder, check=True, capture_output=True)
-
-
-def numbers(command):
-    printed = subprocess.run([command], check=True, capture_output=True, text=True).stdout
+def numbers(printed):
     return [[float(number) for number in re.findall(r"-?\d*\.\d+", line)] for line in printed.splitlines()]
 
 
@@ -54,24 +53,122 @@ def test_the_sources_of_the_library_compile_without_a_warning():
     assert done.returncode == 0, done.stderr
 
 
-@needs_compiler
-def test_the_example_in_c_prints_the_roots(tmp_path):
-    write_single_file(tmp_path)
-    compiler, source = shlex.split(os.environ.get("CC") or "cc"), example("c", tmp_path, "example.c")
-    command = [*compiler, *FLAGS, "proprotor.c", source.name, "-lm", "-o", "example"]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    np.testing.assert_allclose(numbers(tmp_path / "example"), ROOTS, rtol=0, atol=1e-6)
+def run(folder, *command):
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert not done.returncode, done.stderr
+    return done.stdout
 
 
-@pytest.mark.skipif(not shutil.which("gfortran"), reason="there is no gfortran")
+def built_in_c(folder, source):
+    run(
+        folder,
+        *shlex.split(os.environ.get("CC") or "cc"),
+        *FLAGS,
+        "proprotor.c",
+        source,
+        "-lm",
+        "-o",
+        "program",
+    )
+    return ["./program"]
+
+
+def built_in_fortran(folder, source):
+    run(folder, "cc", *FLAGS, "-c", "proprotor.c")
+    run(
+        folder, "gfortran", "-Wall", "-Werror", "proprotor.f90", source, "proprotor.o", "-lm", "-o", "program"
+    )
+    return ["./program"]
+
+
+def built_in_octave(folder, source):
+    command = ["mkoctfile", "--mex", "proprotor_mex.c", "proprotor.c"]
+    run(folder, "env", f"CFLAGS={shlex.join([*FLAGS, '-fPIC'])}", *command)
+    return ["octave-cli", "--quiet", "--norc", source]
+
+
+LANGUAGES = {"c": ("c", built_in_c), "fortran": ("f90", built_in_fortran), "matlab": ("m", built_in_octave)}
+NEEDS = {"fortran": ("gfortran",), "matlab": ("mkoctfile", "octave-cli")}
+languages = pytest.mark.parametrize(
+    "language",
+    [
+        pytest.param(
+            one,
+            marks=pytest.mark.skipif(
+                not all(map(shutil.which, NEEDS.get(one, ()))),
+                reason=f"needs {' and '.join(NEEDS.get(one, ()))}",
+            ),
+        )
+        for one in LANGUAGES
+    ],
+)
+
+
+@languages
 @needs_compiler
-def test_the_example_in_fortran_prints_the_roots(tmp_path):
+def test_the_example_of_the_page_prints_the_roots(tmp_path, language):
     write_single_file(tmp_path)
-    compiled(tmp_path, ["cc"], *FLAGS)
-    source = example("fortran", tmp_path, "example.f90")
-    command = ["gfortran", "proprotor.f90", source.name, "proprotor.o", "-lm", "-o", "example"]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    np.testing.assert_allclose(numbers(tmp_path / "example"), ROOTS, rtol=0, atol=1e-6)
+    ending, build = LANGUAGES[language]
+    command = build(tmp_path, example(language, tmp_path, f"example.{ending}").name)
+    np.testing.assert_allclose(numbers(run(tmp_path, *command)), ROOTS, rtol=0, atol=1e-6)
+
+
+@languages
+@needs_compiler
+def test_eigenvalues_vectors_and_roots_have_the_bits_of_those_in_python(tmp_path, language):
+    """Also those of a matrix that is handed over, and of equations of motion with a coordinate that is not held."""
+    write_single_file(tmp_path)
+    ending, build = LANGUAGES[language]
+    source = tmp_path / f"program.{ending}"
+    source.write_text((PROGRAMS / f"all_functions.{ending}").read_text(encoding="utf-8"), encoding="utf-8")
+    matrices = np.random.default_rng(0).standard_normal((COUNT, N, N))
+    matrices[5, 1, 2] = np.nan
+    mass = matrices[6:] @ matrices[6:].swapaxes(1, 2) + np.eye(N)
+    matrices.tofile(tmp_path / "matrices.bin")
+    np.stack([mass, matrices[:5], matrices[6:]]).tofile(tmp_path / "motion.bin")
+    run(tmp_path, *build(tmp_path, source.name))
+    served = ~eigenvalues.handed_over(matrices)
+    assert served.sum() == COUNT - 1
+    values, right = eigenvalues.eig(matrices[served])
+    roots, rest = eigenvalues.roots_of_motion(mass, matrices[:5], matrices[6:], [0, 2])
+    assert not rest.any()
+    for name, expected in (("values", values), ("vectors", right), ("roots", roots)):
+        found = np.fromfile(tmp_path / f"{name}.bin", dtype=complex)
+        count = COUNT if name != "roots" else len(roots)
+        found = found.reshape(count, *expected.shape[1:])
+        assert (found[served] if name != "roots" else found).tobytes() == expected.tobytes(), name
+    assert (np.fromfile(tmp_path / "handed_over.bin", dtype=bool) == ~served).all()
+
+
+@pytest.mark.skipif(not all(map(shutil.which, NEEDS["matlab"])), reason="needs Octave")
+@needs_compiler
+def test_the_function_of_matlab_refuses_what_it_cannot_take(tmp_path):
+    write_single_file(tmp_path)
+    calls = {
+        "'eigenvalues', ones(2, 3)": "square",
+        "'eigenvalues', 1i * eye(2)": "real array",
+        "'eigenvalues', sparse(eye(2))": "real array",
+        "'eigenvalues', single(eye(2))": "real array",
+        "'eigenvalues', zeros(0)": "1 to 256 states",
+        "'eigenvalues', zeros(257)": "1 to 256 states",
+        "'eigenvalues', ones(2, 2, 2, 2)": "real array",
+        "'eigenvalues'": "proprotor_mex(",
+        "'roots_of_motion', eye(2), eye(2), eye(3)": "one size",
+        "'roots_of_motion', eye(2), eye(2), eye(2), 3": "coordinates that exist",
+        "'roots_of_motion', eye(2), eye(2), eye(2), 0": "coordinates that exist",
+        "'roots_of_motion', eye(2), eye(2), eye(2), 1.5": "coordinates that exist",
+        "'roots_of_motion', eye(2), eye(2), eye(2), NaN": "coordinates that exist",
+        "'roots_of_motion', eye(2), eye(2), eye(2), [1 2 1]": "coordinates that exist",
+        "'roots_of_motion', eye(2), eye(2), eye(2), 'ab'": "numbers of coordinates",
+        "'something'": "proprotor_mex(",
+        "": "proprotor_mex(",
+    }
+    lines = [f"try, proprotor_mex({call}), catch e, disp(e.message), end" for call in calls]
+    (tmp_path / "calls.m").write_text("\n".join(lines), encoding="utf-8")
+    said = run(tmp_path, *built_in_octave(tmp_path, "calls.m")).splitlines()
+    assert len(said) == len(calls)
+    for line, (call, words) in zip(said, calls.items(), strict=True):
+        assert words in line, (call, line)
 
 
 def test_the_interface_for_fortran_is_that_of_the_header():

@@ -193,16 +193,16 @@ def page(case):
 
 
 def test_moving_a_slider_moves_what_is_drawn_and_told(page, case):
-    before = page.lines.data["damping"][1].copy()
-    page.sliders["rotor.precone"].value = 4.0
+    before = page.drawings.lines.data["damping"][1].copy()
+    page.inputs.sliders["rotor.precone"].value = 4.0
     page.update()
-    wanted = live_modes(case, page.airspeeds, {"rotor.precone": 4 * DEG})
+    wanted = live_modes(case, page.chosen.airspeeds, {"rotor.precone": 4 * DEG})
     assert f"{wanted.flutter.start / KT:.1f} KTAS ({wanted.flutter.mode})" in page.readout.text
     assert "precone 4 deg (deck 2.5)" in page.readout.text
-    assert not np.array_equal(before, page.lines.data["damping"][1])
+    assert not np.array_equal(before, page.drawings.lines.data["damping"][1])
     page._reset()
-    np.testing.assert_array_equal(before, page.lines.data["damping"][1])
-    assert page.values == {} and "as in the deck" in page.readout.text
+    np.testing.assert_array_equal(before, page.drawings.lines.data["damping"][1])
+    assert page.chosen.values == {} and "as in the deck" in page.readout.text
 
 
 @pytest.mark.parametrize(
@@ -216,29 +216,29 @@ def test_moving_a_slider_moves_what_is_drawn_and_told(page, case):
     ],
 )
 def test_what_cannot_be_is_told_on_the_page(page, text, told):
-    drawn = page.lines.data
-    page.exact.value = text
-    page.update() if page.values else None
+    drawn = page.drawings.lines.data
+    page.inputs.exact.value = text
+    page.update() if page.chosen.values else None
     assert "Cannot be" in page.message.text and told in page.message.text
-    assert page.lines.data is drawn or page.lines.data == drawn
+    assert page.drawings.lines.data is drawn or page.drawings.lines.data == drawn
     page._reset()
-    page.sliders["rotor.precone"].value = 2.0
+    page.inputs.sliders["rotor.precone"].value = 2.0
     page.update()
     assert page.message.text == "" and "precone 2 deg" in page.readout.text
 
 
 def test_a_value_is_set_exactly(page, case):
-    page.exact.value = "support.modes[chord].frequency = 0.9/rev"
-    assert page.values[CHORD] == pytest.approx(0.9 * case.operation.rotor_speed)
-    page.exact.value = "rotor.control_stiffness = 40000 ft*lbf/rad"
-    assert page.sliders["rotor.control_stiffness"].end == pytest.approx(40000)
+    page.inputs.exact.value = "support.modes[chord].frequency = 0.9/rev"
+    assert page.chosen.values[CHORD] == pytest.approx(0.9 * case.operation.rotor_speed)
+    page.inputs.exact.value = "rotor.control_stiffness = 40000 ft*lbf/rad"
+    assert page.inputs.sliders["rotor.control_stiffness"].end == pytest.approx(40000)
 
 
 def test_a_switch_of_the_model_is_that_of_the_engine(page, case):
     page.switches["pitch"].value = "rigid"
     page.update()
-    wanted = live_modes(case, page.airspeeds, pitch="rigid")
-    assert page.lines.data["mode"] == wanted.names
+    wanted = live_modes(case, page.chosen.airspeeds, pitch="rigid")
+    assert page.drawings.lines.data["mode"] == wanted.names
 
 
 # The command and the server -----------------------------------------------------------------------------------------

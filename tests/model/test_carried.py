@@ -21,13 +21,14 @@ from proprotor.commands.main import main
 from proprotor.compiled.library import why_not
 from proprotor.exchange.matlab import matlab_names
 from proprotor.explore.analysis import live_modes
-from proprotor.explore.page import ExplorePage, messages, readout
+from proprotor.explore.page import ExplorePage
+from proprotor.explore.words import messages, readout
 from proprotor.model import options_in_force, options_of_result, stamp
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
 from proprotor.model.several_rotors import MountedRotor
 from proprotor.plots import mode_motion
-from proprotor.plots.animation import title_of
+from proprotor.plots.mode_shape import title_of
 from proprotor.rotor.options import CHOICES, Options, parse_options
 from proprotor.stability import flutter
 from proprotor.stability.attribution import attribution
@@ -748,7 +749,7 @@ def test_the_page_of_the_explorer_tells_the_options_as_they_are_switched():
     page = ExplorePage(CASE, "xv15-uncoupled", np.linspace(100, 300, 8) * KNOT, {}, options)
     page.put_on(Document())
     assert "Options: locked gimbal." in page.foot.text and "calibrated" in page.foot.text
-    page.options["pitch"] = "rigid"
+    page.chosen.options["pitch"] = "rigid"
     page.update()
     assert "Options: pitch rigid, locked gimbal." in page.foot.text
 

@@ -6,7 +6,7 @@ from matplotlib import pyplot
 from matplotlib.colors import to_rgba
 
 import proprotor as pp
-from proprotor.plots import plot_envelope
+from proprotor.plots import plot_envelope, small_print
 
 KNOT, FOOT = 1852 / 3600, 0.3048
 
@@ -64,7 +64,7 @@ def test_doubtful_onsets_are_hollow_and_told(found):
     axes = plot_envelope(doubtful)
     hollow = [one for one in axes.get_lines() if to_rgba(one.get_markerfacecolor()) == to_rgba("white")]
     assert sum(len(one.get_xdata()) for one in hollow) == found.sizes["condition"] * found.sizes["altitude"]
-    assert any("an invented doubt" in text.get_text().replace("\n", " ") for text in axes.texts)
+    assert "an invented doubt" in small_print.read(axes)
     pyplot.close("all")
 
 
@@ -72,7 +72,7 @@ def test_a_condition_without_an_onset_is_named(found):
     none = found.isel(condition=[0]).copy()
     none["equivalent_onset"] = none.equivalent_onset * np.nan
     axes = plot_envelope(none)
-    assert "No onset in the search: as the deck" in axes.get_title(loc="left")
+    assert "No onset in the search: as the deck" in small_print.read(axes)
     pyplot.close("all")
 
 

@@ -7,6 +7,7 @@ import xarray
 
 import proprotor as pp
 from proprotor import plots
+from proprotor.plots import small_print
 from proprotor.plots.input_names import short_name, short_names
 
 matplotlib.use("Agg")
@@ -188,7 +189,7 @@ def test_a_distribution_shows_shares_and_percentiles_and_counts_the_rest(sampled
     verticals = [line.get_xdata()[0] for line in ax.lines if len(set(line.get_xdata())) == 1]
     expected = pp.distribution(sampled, percentiles=(10, 50)).value.values / KNOT
     np.testing.assert_allclose(verticals, expected)  # 99.9 % lies among designs above the range
-    told = ax.get_title(loc="left")
+    told = small_print.read(ax)
     assert "199 designs" in told and "1 stable throughout" in told and "1 failed" in told
     assert "99.9 %: > 486" in told  # 250 m/s, the highest airspeed, in knots
     assert ax.get_xlabel() == "Flutter speed, KTAS" and "%" in ax.get_ylabel()

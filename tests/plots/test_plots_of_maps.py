@@ -8,6 +8,7 @@ from matplotlib.path import Path
 
 import proprotor as pp
 from proprotor import plots
+from proprotor.plots import small_print
 from proprotor.stability.boundary_lines import boundary_lines
 from proprotor.stability.modes import decomposition
 
@@ -100,7 +101,7 @@ def test_cells_with_a_failed_corner_are_left_blank_and_marked():
     assert len(ax.collections[0].get_paths()) == 1
     (crosses,) = (line for line in ax.lines if line.get_marker() == "x")
     assert crosses.get_xydata().tolist() == [[2.0, 1.0]]
-    assert "could not be analysed" in ax.get_title(loc="left")
+    assert "could not be analysed" in small_print.read(ax)
 
 
 def test_regions_are_named_on_their_own_side(found):
@@ -142,4 +143,4 @@ def test_a_level_of_damping_is_told(case):
     found = case.stability_map(
         {"airspeed": "200:400:50kt", STIFFNESS: np.linspace(8000, 30000, 4)}, level=0.01
     )
-    assert "1 % of critical" in plots.plot_stability_map(found).get_title(loc="left")
+    assert "1 % of critical" in small_print.read(plots.plot_stability_map(found))

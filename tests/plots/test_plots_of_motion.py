@@ -1,15 +1,22 @@
 """Modes in motion: points move as the configuration of the derivation says, written down here once more."""
 
+import base64
+import io
+import re
+import subprocess
+
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.animation import FFMpegWriter
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
 import proprotor as pp
 from proprotor import plots
-from proprotor.plots.animation import animate_mode, title_of
+from proprotor.plots.animation import animate_mode
 from proprotor.plots.mode_motion import WingSketch, mode_motion, sketch_of
+from proprotor.plots.mode_shape import title_of
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -196,10 +203,51 @@ def test_an_animation_is_a_gif_of_one_cycle_that_repeats(case, tmp_path):
     assert not plt.get_fignums()
 
 
+def pictures_of_page(path):
+    """Return the pictures within a page, in their order."""
+    encoded = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", path.read_text(encoding="utf-8"))
+    return [Image.open(io.BytesIO(base64.b64decode(one))).convert("L") for one in encoded]
+
+
+def test_a_page_has_the_pictures_of_the_cycle_and_nothing_from_elsewhere(case, tmp_path):
+    motion = mode_motion(case, SPEED, "torsion")
+    page = animate_mode(motion, tmp_path / "torsion.html", frames=6, dpi=50)
+    gif = animate_mode(motion, tmp_path / "torsion.gif", frames=6, dpi=50)
+    pictures = pictures_of_page(page)
+    assert len(pictures) == 6
+    with Image.open(gif) as moving:
+        for place, picture in enumerate(pictures):
+            moving.seek(place)
+            difference = np.asarray(picture, dtype=float) - np.asarray(moving.convert("L"), dtype=float)
+            assert np.abs(difference).mean() < 6  # of 255: both have few colours
+    text = page.read_text(encoding="utf-8")
+    assert "http" not in text and 'max="5"' in text and "83)" in text  # 12 pictures a second
+    assert f"<title>{motion.case}: torsion at " in text
+
+
+@pytest.mark.parametrize("found", ["on the path", "of the package"])
+def test_a_film_has_whole_cycles(case, tmp_path, found):
+    imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    if found == "on the path" and not FFMpegWriter.isAvailable():
+        found = "of the package"
+    where = {"animation.ffmpeg_path": "no-such-program"} if found == "of the package" else {}
+    with matplotlib.rc_context(where):
+        path = animate_mode(mode_motion(case, SPEED, "torsion"), tmp_path / "torsion.mp4", frames=6, dpi=50)
+    raw = ["-f", "rawvideo", "-pix_fmt", "gray", "-"]
+    read = subprocess.run([imageio_ffmpeg.get_ffmpeg_exe(), "-i", str(path), *raw], capture_output=True)
+    about = read.stderr.decode().partition("Output")[0]
+    assert "h264" in about and "yuv420p" in about and "400x220" in about and "12 fps" in about
+    film = np.frombuffer(read.stdout, np.uint8).astype(float).reshape(-1, 220, 400)
+    assert len(film) % 6 == 0 and 7 <= len(film) / 12 <= 9
+    again, later = (np.abs(film[1] - film[place]).mean() for place in (7, 4))
+    assert again < 0.2 * later and later > 0.5
+    assert [one.name for one in tmp_path.iterdir()] == ["torsion.mp4"] and not plt.get_fignums()
+
+
 def test_an_animation_that_cannot_be_made_is_refused(case, tmp_path):
     motion = mode_motion(case, SPEED, "chord")
-    with pytest.raises(pp.InputError, match="gif"):
-        animate_mode(motion, tmp_path / "chord.mp4")
+    with pytest.raises(pp.InputError, match=r"gif, \.html, \.mp4"):
+        animate_mode(motion, tmp_path / "chord.avi")
     with pytest.raises(pp.InputError, match="at least 4"):
         animate_mode(motion, tmp_path / "chord.gif", frames=2)
     assert not list(tmp_path.iterdir())

@@ -41,7 +41,8 @@ def test_outputs_over_time_have_a_line_for_each_gust():
     assert found.proprotor.kind == "single gusts"
     ax = found.proprotor.plot()
     lines = [line for line in ax.lines if not line.get_label().startswith("_")]
-    assert [line.get_label() for line in lines] == [f"force_x, H = {h} m" for h in (10, 30, 50)]
+    assert [line.get_label() for line in lines] == [f"H = {h} m" for h in (10, 30, 50)]
+    assert ax.get_ylabel() == "force_x (N)"
     assert lines[2].get_ydata() == pytest.approx(found.response.sel(output="force_x").values[2])
     two = plots.plot_time_response(found.isel(gradient=0, drop=True), outputs=["force_x", "force_z"])
     assert two.get_ylabel() == "force_x, force_z (N)"

@@ -14,6 +14,7 @@ import tomllib
 import tracemalloc
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
@@ -70,6 +71,13 @@ SAMPLED = (
     "--sample",
 )
 GRID = ("study", "xv15-uncoupled", "--vary", f"{PRECONE}=1:2:1 deg", "--speed", "200 kt", "--out")
+
+
+def film_without_ffmpeg(path):
+    with matplotlib.rc_context({"animation.ffmpeg_path": "no-such-program"}):
+        animate_mode(None, path)
+
+
 OF_SALTELLI = xr.Dataset({"growth_rate": ("design", np.ones(3))}, attrs={"sample": json.dumps({})})
 BASE = "a package that comes with proprotor"
 NEEDS = {
@@ -95,6 +103,7 @@ NEEDS = {
         "explore",
         lambda folder: command("explore", "xv15-uncoupled", "--no-browser"),
     ),
+    "a film": ("imageio_ffmpeg", "film", lambda folder: film_without_ffmpeg(folder / "x.mp4")),
     "Nastran's HDF5 file": ("h5py", "nastran", lambda folder: read_hdf5(Path(__file__), grid=1)),
 }
 
@@ -333,7 +342,7 @@ LARGE = {
     "against": lambda: CASE.boundary_against({PRECONE: np.linspace(0.01, 0.05, 10**6)}, "1:400:1e-2kt"),
     "values of an input": lambda: CASE.sweep(100.0, {"rotor.blade_mass": FAR}),
     "workers": lambda: pp.study(CASE, {PRECONE: FAR[:200_000]}, 100.0, workers=200_000),
-    "batch": lambda: pp.study(CASE, pp.sampling.points({PRECONE: FAR[: 10**7]}), 100.0, batch=10**7),
+    "batch": lambda: pp.study(CASE, pp.sampling.points({PRECONE: FAR[: 10**6]}), 100.0, batch=10**6),
     "frames": lambda: animate_mode(MOTION, "x.gif", frames=TRILLION),
     "dpi": lambda: animate_mode(MOTION, "x.gif", dpi=10**7),
     "frequencies": lambda: frequency_response(MODEL, FAR[: 10**8]),

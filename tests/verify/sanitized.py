@@ -78,10 +78,14 @@ def equations_of_motion(n, count, seed):
 def supports(size, modes, count, shared, seed):
     rng = np.random.default_rng(seed)
     modes = min(modes, motion.MOST_ROWS + 6 - size)
-    matrices = spoiled(rng, rng.standard_normal((count, size, size)))
-    shape = () if shared else (len(matrices),)
-    hub, addition = rng.standard_normal((*shape, 6, modes)), rng.standard_normal((*shape, modes, modes))
-    motion.on_support(matrices, hub, addition)
+    matrices = [spoiled(rng, rng.standard_normal((count, size, size))) for _ in range(3)]
+    if rng.random() < 0.5:
+        matrices.append(rng.standard_normal((count, size, rng.integers(1, 10))))
+    alike = min(map(len, matrices))
+    shape = () if shared else (alike,)
+    hub = rng.standard_normal((*shape, 6, modes))
+    additions = [rng.standard_normal((*shape, modes, modes)) for _ in range(3)]
+    motion.on_support([matrix[:alike] for matrix in matrices], hub, additions)
     calls["supports"] += 1
 
 

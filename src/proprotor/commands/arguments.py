@@ -19,6 +19,7 @@ from click.types import FloatParamType, StringParamType
 
 from proprotor.case import Case, list_cases, load_case
 from proprotor.commands.exit_codes import EXIT_CODES
+from proprotor.commands.waiting import waiting
 from proprotor.deck.vary import design_inputs
 from proprotor.errors import InputError
 from proprotor.rotor.options import CHOICES, LOCKABLE, Options, default_choice
@@ -68,7 +69,8 @@ class Request(NamedTuple):
         InputError
             For a deck or field that cannot be used.
         """
-        return load_case(self.name, self.settings)
+        with waiting("Reading the deck"):
+            return load_case(self.name, self.settings)
 
 
 class Angle(FloatParamType):

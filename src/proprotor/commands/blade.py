@@ -151,4 +151,4 @@ def _print(table: BladeStations, found: HingedBlade, compared: Any) -> None:
             f"The blade is held at its first station, {table.radius[0]:.4g} m; what is inboard has no mass here."
         )
     for line in verdict(compared):
-        out.print(line, soft_wrap=True)
+        out.print(line)

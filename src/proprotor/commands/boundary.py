@@ -204,7 +204,7 @@ def _print(case: Case, shown: Dataset, left_out: Sequence[str], unit: str) -> No
     failures = dict.fromkeys(reason for reason in shown.reason.values.tolist() if reason)
     for reason in failures:
         values = [r for r in records if r["failure"] == reason]
-        out.print(f"Not analysed at {next(iter(values[0].values())):g} {unit}: {reason}.", soft_wrap=True)
+        out.print(f"Not analysed at {next(iter(values[0].values())):g} {unit}: {reason}.")
     warnings = shown.warning.values
     rows, places = (warnings != "").nonzero()
     if len(rows):

@@ -50,8 +50,9 @@ def _print(case: Case) -> None:
     for paragraph in filter(None, (case.title, case.description, *reservations(case), *warnings)):
         out.print(f"{paragraph}\n")
     for path, number in doubtful_inputs(case).items():
-        out.print(f"{number.status:<11} {path} = {number.written}", soft_wrap=True)
-        out.print(f"{'':<11} {number.source}", soft_wrap=True)
+        out.print_hanging(f"{number.status:<11} ", f"{path} = {number.written}")
+        if number.source:
+            out.print_hanging(f"{'':<11} ", number.source)
 
 
 def _list(as_json: bool) -> None:

@@ -95,7 +95,7 @@ def _print_in_full(found: tuple[DeckField, ...]) -> None:
     for field in found:
         out.print(field.path, style="bold")
         for label, text in field_lines(field):
-            out.print(f"  {label:<11}{text}", soft_wrap=True)
+            out.print_hanging(f"  {label:<11}", text)
 
 
 def _print_table(found: tuple[DeckField, ...]) -> None:

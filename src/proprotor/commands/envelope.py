@@ -100,5 +100,6 @@ def _print(case: Case, found: Dataset) -> None:
     out = output.console()
     out.print(f"{HEADING}:")
     output.print_table(COLUMNS, envelope_rows(found), text=TEXT, narrowest=_NARROWEST)
-    for sentence in (envelope_verdict(found), *envelope_footnotes(found), SCOPE):
+    for sentence in (*envelope_footnotes(found), SCOPE):
         out.print(sentence)
+    out.print(envelope_verdict(found), style="bold")

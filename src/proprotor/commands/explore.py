@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 import numpy as np
+from click.core import ParameterSource
 
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
@@ -39,10 +40,11 @@ _POINTS = 60  # airspeeds by default
 def explore(
     request: arguments.Request, speed: str | None, port: int, no_browser: bool, as_json: bool
 ) -> None:
-    """Open a page with sliders on the inputs of a deck; damping and root locus follow the sliders.
+    """Open a page with sliders on the inputs of a deck; modes and a stability map follow the sliders.
 
     CASE is a bundled case or a TOML file. The file stays as it is; the page saves your settings as a new deck. Only
-    this machine can open the page, and Ctrl+C ends it. The command needs the extra `explore`: pip install
+    this machine can open the page, and Ctrl+C ends it. Without --backend the page takes compiled functions where there
+    is a C compiler, because the map then follows a slider at once. The command needs the extra `explore`: pip install
     "proprotor[explore]".
 
     \b
@@ -54,6 +56,9 @@ def explore(
     need("bokeh", "explore", "the page", "explore")
     need("tornado", "explore", "the page", "explore")
     case = request.load()
+    chosen = dict(request.options)
+    if click.get_current_context().get_parameter_source("backend") is ParameterSource.DEFAULT:
+        chosen["backend"] = "auto"
     airspeeds = None if speed is None else np.unique(speeds(speed, "--speed", case.operation.density))
     if airspeeds is not None and len(airspeeds) < 2:
         raise InputError("--speed", speed, "must be a range of airspeeds")
@@ -64,7 +69,7 @@ def explore(
         from proprotor.explore.server import ADDRESS, listen, serve
 
         drawn = scan_speeds(case, _POINTS) if airspeeds is None else airspeeds
-        live_modes(case, drawn, **request.options)  # an unusable input ends here, before anything is served
+        live_modes(case, drawn, **chosen)  # an unusable input ends here, before anything is served
     try:
         opened = listen(port)
     except OSError as error:
@@ -72,7 +77,7 @@ def explore(
         raise click.ClickException(f"--port = {port}: cannot listen on {ADDRESS} ({reason})") from None
 
     def put_on(document: Document) -> None:
-        options = output.options_in_force(case, request.options)
+        options = output.options_in_force(case, chosen)
         ExplorePage(case, request.name, drawn, request.settings, options).put_on(document)
 
     def ready(address: str) -> None:

@@ -12,15 +12,19 @@ from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubt_at
+from proprotor.model.provenance import reservations
+from proprotor.model.stamp import unusual_options
 from proprotor.stability.flutter import FlutterPoint
 from proprotor.stability.flutter_messages import (
     COLUMNS,
+    answer,
     boundary_record,
     boundary_row,
     equivalent,
     failed_records,
     mechanism_message,
     modes_beyond,
+    remarks,
     verdict,
 )
 from proprotor.tables.csv_text import csv_of
@@ -34,10 +38,16 @@ from proprotor.units import KNOT, airspeed_unit, speed_factor, speeds
     "--speed", metavar="SPEED", help='Airspeed whose margin to flutter is wanted: "250 ktas" or "250 keas".'
 )
 @arguments.level_option
+@click.option("--brief", is_flag=True, help="Print the answer first, then what it rests on, and no table.")
 @output.output_options(csv="Write a row for each boundary.")
 @arguments.model_options
 def flutter(
-    request: arguments.Request, outputs: output.Outputs, scan: str | None, speed: str | None, level: float
+    request: arguments.Request,
+    outputs: output.Outputs,
+    scan: str | None,
+    speed: str | None,
+    level: float,
+    brief: bool,
 ) -> None:
     """Find the airspeeds at which modes become unstable, or stable again.
 
@@ -48,14 +58,17 @@ def flutter(
     instabilities of the rigid body are a third kind, and the flutter speed is that of flutter alone. The mechanism says
     which modes take part in the motion at the boundary, and how much. If no mode becomes unstable, the command prints
     the range of the search, and the least damping in the range with its mode. If airspeeds could not be analysed, it
-    says why.
+    says why. The last line is the answer; with --brief it is the first.
 
     \b
     Examples:
       proprotor flutter xv15
+      proprotor flutter xv15 --brief
       proprotor flutter xv15 --speed "160 kt" --level "3 %"
       proprotor flutter my.toml --set rotor.precone="1.5 deg" --json
     """
+    if brief and outputs.as_json:
+        raise InputError("--brief", None, "goes without --json, which prints everything")
     case = request.load()
     airspeeds = None if scan is None else speeds(scan, "--scan", case.operation.density)
     at = None if speed is None else arguments.one_speed(speed, case)
@@ -67,7 +80,7 @@ def flutter(
     rows = [record | {"mechanism": mechanism_message(record["mechanism"])} for record in records]
     outputs.write(
         document=lambda: output.about(case, request) | _document(found, records, at),
-        table=lambda: _print(case, found, records, at, arguments.unit_of(scan or speed or "kt")),
+        table=lambda: (_print_brief if brief else _print)(case, found, at, arguments.unit_of(scan or speed or "kt")),
         csv=lambda: csv_of(rows, COLUMNS, found.stamp),
     )
     output.exit_without(math.isfinite(found.searched[0]))
@@ -103,19 +116,24 @@ def _document(found: FlutterPoint, records: list[dict[str, Any]], at: float | No
     return document
 
 
-def _print(
-    case: Case, found: FlutterPoint, records: list[dict[str, Any]], at: float | None, unit: str
-) -> None:
+def _print(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None:
+    """Print the case, its boundaries, their doubts, and the answer last."""
     output.print_head(case, found.stamp)
     unit, factor = airspeed_unit(unit), float(speed_factor(unit, case.operation.density))
-    if not math.isfinite(found.searched[0]):
-        output.console().print("No airspeed could be analysed.", style="bold")
-        for stretch in found.failed:
-            output.console().print(stretch.message(unit, factor))
-        return
-    if records:
+    if found.boundaries:
         columns = (unit, "Hz", "/rev", "mode", "kind", "", "mechanism")
-        output.print_table(columns, (boundary_row(record, factor) for record in records), text=columns[3:])
+        rows = (boundary_row(boundary_record(boundary, case), factor) for boundary in found.boundaries)
+        output.print_table(columns, rows, text=columns[3:])
     output.print_doubts(found.doubts, unit, factor)
     for line in verdict(found, at, unit, factor):
         output.console().print(line, style="bold")
+
+
+def _print_brief(case: Case, found: FlutterPoint, at: float | None, unit: str) -> None:
+    """Print the answer first, then its doubts and what it rests on."""
+    unit, factor = airspeed_unit(unit), float(speed_factor(unit, case.operation.density))
+    for line in answer(found, at, unit, factor):
+        output.console().print(line, style="bold")
+    output.print_doubts(found.doubts, unit, factor)
+    for line in (*remarks(found, unit, factor), *unusual_options(found.stamp), *reservations(case)):
+        output.console().print(line)

@@ -15,6 +15,7 @@ from typing import IO, Any
 import click
 
 from proprotor.commands.exit_codes import EXIT_CODES
+from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 
 # The commands in the order in which a newcomer meets them. A command is imported when it is called, and NumPy and the
@@ -79,7 +80,8 @@ class _Imported(UserDict[str, Any]):
     def __getitem__(self, name: str) -> click.Command:
         summary = self.data[name]
         module = _MODULES.get(name, name)
-        command: click.Command = getattr(import_module(f"proprotor.commands.{module}"), module)
+        with waiting("Starting"):
+            command: click.Command = getattr(import_module(f"proprotor.commands.{module}"), module)
         command.short_help = summary
         return command
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import wraps
@@ -14,6 +13,7 @@ import click
 
 from proprotor.case import Case
 from proprotor.commands.arguments import Command, Option, Request
+from proprotor.commands.columns import laid_out
 from proprotor.commands.waiting import waiting
 from proprotor.errors import InputError
 from proprotor.files import output as output_file
@@ -183,22 +183,15 @@ def print_table(
 ) -> None:
     """Print a table: numbers are set to the right, the columns named in `text` to the left.
 
-    No cell is cut off. The last column, if it is text, is wrapped to the width of the terminal, but never to less than
-    `narrowest` characters.
+    No cell is cut off. A table that is too wide for the terminal wraps its words, see `proprotor.commands.columns`; a
+    last column of long text has at least `narrowest` characters, or stands beneath its rows.
     """
-    table = [columns, *rows]
-    widths = [max(map(len, cells)) for cells in zip(*table, strict=True)]
     out = console()
-    indent = sum(widths[:-1]) + 2 * (len(widths) - 1)
-    room = max(narrowest, out.width - indent) if columns[-1] in text else 10_000
-    for number, row in enumerate(table):
-        *cells, last = (
-            cell.ljust(width) if name in text else cell.rjust(width)
-            for cell, width, name in zip(row, widths, columns, strict=True)
-        )
-        wrapped = textwrap.wrap(last.rstrip(), room, drop_whitespace=columns[-1] in text)
-        line = "  ".join([*cells, ("\n" + " " * indent).join(wrapped)])
-        out.print(line.rstrip(), style="" if number else "dim", soft_wrap=True)
+    head, body = laid_out(columns, rows, text, out.width, narrowest)
+    for line in head:
+        out.print(line, style="dim", soft_wrap=True)
+    for line in body:
+        out.print(line, soft_wrap=True)
     out.print()
 
 

@@ -1,4 +1,4 @@
-"""The command `proprotor report`: all results on a case, on one page."""
+"""The command `proprotor report`: all results on a case, in one file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from proprotor.units import speeds
 if TYPE_CHECKING:
     from proprotor.report import Document, Findings
 
-_SUFFIXES = (".html", ".pdf")
+_SUFFIXES = (".html", ".pdf", ".docx")
 
 
 @arguments.command()
@@ -33,9 +33,17 @@ _SUFFIXES = (".html", ".pdf")
 @click.option(
     "--out",
     metavar="FILE",
-    help="File to write, .html or .pdf; by default the name of the case and -report.html.",
+    help="File to write, .html, .pdf or .docx; by default the name of the case and -report.html.",
 )
-@click.option("--pdf", is_flag=True, help="Write a PDF beside the HTML (pip install 'proprotor[report]').")
+@click.option("--pdf", is_flag=True, help="Write a PDF as well (pip install 'proprotor[report]').")
+@click.option(
+    "--docx", is_flag=True, help="Write a DOCX as well, to go on writing in (pip install 'proprotor[report]')."
+)
+@click.option(
+    "--margin-at",
+    metavar="SPEED",
+    help='Airspeed whose margin to flutter stands in the summary: "250 ktas" or "250 keas".',
+)
 @arguments.points_option
 @output.json_option
 @arguments.model_options
@@ -44,34 +52,40 @@ def report(
     speed: str | None,
     out: str | None,
     pdf: bool,
+    docx: bool,
+    margin_at: str | None,
     points: str | None,
     as_json: bool,
 ) -> None:
     """Write a report on a case: boundaries, plots, causes, sensitivities, and every input with its source.
 
-    CASE is a bundled case or a TOML file. The report is one file that needs no other file. Its first page has
-    the reservations about the numbers. The same deck and options give the same file, except for the date;
+    CASE is a bundled case or a TOML file. The report is one file that needs no other file. Its first page is a
+    summary: the verdict with its margin, the reservations about the numbers, the numbers that follow from the inputs,
+    and the inputs that matter most. The same deck and options give the same file, except for the date;
     the environment variable SOURCE_DATE_EPOCH (seconds since 1970) sets the date.
 
     \b
     Examples:
       proprotor report xv15
-      proprotor report my.toml --out my.pdf
+      proprotor report my.toml --out my.docx --margin-at "250 keas"
       proprotor report my.toml --speed 100:400:5kt --set rotor.precone="1.5 deg" --pdf
     """
     # Here, because the packages behind a report take long to import.
-    from proprotor.report import analyse, html_of, pdf_of, report_document
+    from proprotor.report import analyse, report_document
 
     date, case = _date(), request.load()
     airspeeds = None if speed is None else speeds(speed, "--speed", case.operation.density)
     up = [arguments.FREQUENCY, arguments.DAMPING]
     across = arguments.airspeed_points(case.operation.density)
     measured = arguments.points_of(points, out or case.name, across, up)
-    places = _places(out or f"{case.name}-report.html", pdf)
+    at = None if margin_at is None else arguments.one_speed(margin_at, case)
+    if at == 0:
+        raise InputError("--margin-at", margin_at, "must be above zero")
+    places = _places(out or f"{case.name}-report.html", [".pdf"] * pdf + [".docx"] * docx)
     for place in places:
         output.check_writable("--out", place)
-    with waiting("Analysing"):
-        found = analyse(case, airspeeds, request.options)
+    with waiting("Analysing") as tell:
+        found = analyse(case, airspeeds, request.options, tell)
     with waiting("Drawing"):
         document = report_document(
             case,
@@ -80,15 +94,14 @@ def report(
             deck_hash=_deck_hash(case, request),
             date=date,
             unit=arguments.unit_of(speed or "kt"),
+            margin_at=at,
             points=measured,
         )
-        contents = {
-            place: pdf_of(document) if _is_pdf(place) else html_of(document).encode() for place in places
-        }
+        contents = {place: _content_of(document, place) for place in places}
     for place, content in contents.items():
         output.write("--out", place, content)
     if as_json:
-        output.print_json(output.about(case, request) | _document(case, found, document, places))
+        output.print_json(output.about(case, request) | _document(case, found, document, places, at))
     else:
         output.print_head(case, found.sweep.attrs)
         for sentence in document.verdict:
@@ -96,20 +109,29 @@ def report(
     output.exit_without(found.mode)
 
 
-def _places(out: str, pdf: bool) -> list[str]:
-    """Return the files to write. Refuse other kinds of files, and a PDF without its typesetter, before the analysis."""
-    from proprotor.report import check_typesetter
+def _places(out: str, more: list[str]) -> list[str]:
+    """Return the files to write: `out`, and one beside it for each further suffix.
+
+    Refuse other kinds of files, and those whose package is missing, before the analysis.
+    """
+    from proprotor.report import check_typesetter, check_word
 
     place = Path(out)
     if place.suffix.lower() not in _SUFFIXES:
         raise InputError("--out", out, f"must end in {' or '.join(_SUFFIXES)}")
-    if pdf or _is_pdf(out):
-        check_typesetter()
-    return [out, str(place.with_suffix(".pdf"))] if pdf and not _is_pdf(out) else [out]
+    suffixes = [suffix for suffix in more if suffix != place.suffix.lower()]
+    for suffix in (place.suffix.lower(), *suffixes):
+        {".pdf": check_typesetter, ".docx": check_word}.get(suffix, lambda: None)()
+    return [out, *(str(place.with_suffix(suffix)) for suffix in suffixes)]
 
 
-def _is_pdf(place: str) -> bool:
-    return place.lower().endswith(".pdf")
+def _content_of(document: Document, place: str) -> bytes:
+    """Return the document in the form of a file."""
+    from proprotor.report import docx_of, html_of, pdf_of
+
+    makers = {".pdf": pdf_of, ".docx": docx_of}
+    made = makers.get(Path(place).suffix.lower())
+    return html_of(document).encode() if made is None else made(document)
 
 
 def _date() -> str:
@@ -138,8 +160,11 @@ def _content(value: Any) -> Any:
     return Path(value).read_bytes() if isinstance(value, FilePath) else value
 
 
-def _document(case: Case, found: Findings, document: Document, places: list[str]) -> dict[str, Any]:
-    return {
+def _document(
+    case: Case, found: Findings, document: Document, places: list[str], at: float | None
+) -> dict[str, Any]:
+    margin = {} if at is None else {"margin at (m/s)": at, "margin": found.flutter.margin(at)}
+    return margin | {
         "written": places,
         "date": document.date,
         "searched (m/s)": list(found.flutter.searched),

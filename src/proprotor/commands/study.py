@@ -224,7 +224,7 @@ def _print(results: Dataset, table: StudyTable) -> None:
     out, found = output.console(), study_summary(results)
     out.print(f"{found['title']}: {found['points']} points, {found['failed']} failed")
     for text, count in list(found["reasons"].items())[:_REASONS]:
-        out.print(f"  {count} × {text}", soft_wrap=True)
+        out.print_hanging(f"  {count} × ", text)
     if "sample" not in results.attrs:
         _print_designs(table)
     if "flutter_speed" in results:
@@ -289,7 +289,7 @@ def _print_flutter(results: Dataset, found: Mapping[str, Any]) -> None:
     else:
         out.print("no flutter speed was found")
     for text, count in list(found["notes"].items())[:_REASONS]:
-        out.print(f"  {count} × {text}", soft_wrap=True)
+        out.print_hanging(f"  {count} × ", text)
 
 
 def _print_shares(found: Mapping[str, Any]) -> None:

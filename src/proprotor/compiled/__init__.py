@@ -6,13 +6,12 @@ functions hand over. Nothing needs this room: without a compiler everything is c
 
     library      builds, keeps and loads the library; says why there is none
     eigenvalues  eigenvalues and right vectors of many matrices, roots of equations of motion
-    single_file  writes header and source of the solver for programs in C, Fortran or MATLAB
     plans        trims of blades and matrices of rotors by the plans of the derivation
     bounds       the bound on the path to a trim
-    motion       equations of motion on a support, and whether every motion has mass
+    motion       equations of motion on a support, whether every motion has mass, state matrices
     shapes, shapes.c
                  motion of the coordinates in the modes
-    single_file, interface.c, proprotor.h, proprotor.f90
+    single_file, interface.c, proprotor.h, proprotor.f90, matlab
                  the solver as one source for programs in C, Fortran or MATLAB
     columns, columns.h
                  how vectors of numbers, one lane for each problem, are read and written; their memory
@@ -20,10 +19,10 @@ functions hand over. Nothing needs this room: without a compiler everything is c
                  the QR iteration in lanes, and vectors by substitution
     motion.h, motion.c
                  equations of motion: on a support, and solved for the accelerations
-    bounds.c, rows.h
+    bounds.h, bounds.c, rows.h
                  the bound; linear equations of a few rows
-    points.h, trim.h, plain.c, general.c
-                 the plans at many points, and Newton's method for the trim, for each set of plans
+    points.h, trim.h, whole.h, plain.c, general.c
+                 for each set of plans: at many points, Newton's method for the trim, trim and matrices in one go
 
 The public names of these modules, but for `columns`, are the room's face.
 """

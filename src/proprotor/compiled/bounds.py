@@ -1,4 +1,4 @@
-"""The bound on the path to a trim for many points by the compiled functions, as far as most points need it."""
+"""The bound on the path to a trim for many points by the compiled functions."""
 
 from __future__ import annotations
 
@@ -12,28 +12,31 @@ from proprotor.compiled.library import library
 from proprotor.typing import Array
 
 
-def lead_to_end(before: Sequence[Array], after: Sequence[Array]) -> Array:
-    """Return which points (n,) have one path from the undeflected blade to their trim, by a bound in a few windows.
+def lead_to_end(sprung: Array, before: Sequence[Array], after: Sequence[Array]) -> Array:
+    """Return which points (n,) have one path from the undeflected blade to their trim, by the bound.
 
     Parameters
     ----------
+    sprung : array (k,) of bool
+        Which rows are flap and lag.
     before, after : two arrays (n, k, k)
         Slopes at the undeflected blade and at the trim: with all of the airloads, and the part of the airloads.
     """
-    slopes = [np.ascontiguousarray(matrix, dtype=float) for matrix in (*before, *after)]
-    points, size, _ = slopes[0].shape
-    found = np.zeros(points, dtype=bool)
-    ends = [
-        (ctypes.c_void_p * 2)(*(matrix.ctypes.data for matrix in pair)) for pair in (slopes[:2], slopes[2:])
-    ]
-    library().lead_to_end(ctypes.c_ssize_t(points), ctypes.c_int(size), *ends, address(found))
-    return found
+    return _answers("lead_to_end", sprung, before, after)
 
 
-def near_each_other(slopes: Array, expected: Array) -> Array:
-    """Return which slopes (n, k, k) are so near to the expected ones that one trim has both."""
-    points, size, _ = slopes.shape
-    given = [np.ascontiguousarray(matrix, dtype=float) for matrix in (slopes, expected)]
-    found = np.zeros(points, dtype=bool)
-    library().near_each_other(ctypes.c_ssize_t(points), ctypes.c_int(size), *map(address, (*given, found)))
+def near_each_other(sprung: Array, slopes: Sequence[Array], expected: Sequence[Array]) -> Array:
+    """Return which slopes, as of `lead_to_end`, are so near to the expected ones that one trim has both."""
+    return _answers("near_each_other", sprung, slopes, expected)
+
+
+def _answers(function: str, sprung: Array, one: Sequence[Array], other: Sequence[Array]) -> Array:
+    """Return what a function of the library says of two sets of slopes."""
+    kept = [np.ascontiguousarray(matrix, dtype=float) for matrix in (*one, *other)]
+    points, size, _ = kept[0].shape
+    rows, found = np.ascontiguousarray(sprung, dtype=bool), np.zeros(points, dtype=bool)
+    pairs = [(ctypes.c_void_p * 2)(*(matrix.ctypes.data for matrix in pair)) for pair in (kept[:2], kept[2:])]
+    getattr(library(), function)(
+        ctypes.c_ssize_t(points), ctypes.c_int(size), address(rows), *pairs, address(found)
+    )
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from proprotor.typing import Array
 
 _WIDEST = 64  # bytes of a vector register
+_MOST_KEPT = 2**20  # bytes
 
 
 class Column(ctypes.Structure):
@@ -18,25 +20,51 @@ class Column(ctypes.Structure):
     _fields_ = (("at", ctypes.c_void_p), ("point", ctypes.c_ssize_t), ("along", ctypes.c_ssize_t))
 
 
-def column(value: Any, kept: list[Array]) -> Column:
-    """Return a number, or an array (along,), (points, along) or (1, along), as a column; `kept` keeps it in memory."""
-    array = np.asarray(value, dtype=float)
-    kept.append(array)
+def place_of(array: Array) -> tuple[int, int, int]:
+    """Return where an array begins, and the strides of its last two axes as of `Column`.
+
+    Arrays of floats (along,), (points, along) and (1, along) are columns.
+    """
     strides = [
         stride // array.itemsize if size > 1 else 0
         for stride, size in zip(array.strides, array.shape, strict=True)
     ]
-    point, along = (0,) * (2 - array.ndim) + tuple(strides)
-    return Column(array.ctypes.data, point, along)
+    point, along = [0, 0, *strides][-2:]
+    return array.__array_interface__["data"][0], point, along
+
+
+def column(value: Any, kept: list[Array]) -> Column:
+    """Return a number, or an array as of `place_of`, as a column; `kept` keeps it in memory."""
+    array = np.asarray(value, dtype=float)
+    kept.append(array)
+    return Column(*place_of(array))
 
 
 def address(array: Array) -> Any:
     """Return where an array begins."""
-    return ctypes.c_void_p(array.ctypes.data)
+    return ctypes.c_void_p(array.__array_interface__["data"][0])
+
+
+class _Own(threading.local):
+    """Memory of each thread."""
+
+    def __init__(self) -> None:
+        self.memory = np.empty(0, dtype=np.uint8)
+
+
+_OWN = _Own()
 
 
 def lane_room(vectors: int) -> Array:
-    """Return memory for vectors of lanes, at a place where they may begin."""
-    memory = np.empty((vectors + 1) * _WIDEST, dtype=np.uint8)
-    start = -memory.ctypes.data % _WIDEST
+    """Return memory for vectors of lanes, at a place where they may begin, until the thread asks again.
+
+    A few vectors have the same place each time: to get new memory takes longer than most calls.
+    """
+    size = (vectors + 1) * _WIDEST
+    memory = _OWN.memory
+    if size > len(memory):
+        memory = np.empty(size, dtype=np.uint8)
+        if size <= _MOST_KEPT:
+            _OWN.memory = memory
+    start = -memory.__array_interface__["data"][0] % _WIDEST
     return memory[start:]

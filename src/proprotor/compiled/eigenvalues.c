@@ -128,17 +128,12 @@ void eigenvalues(int n, ptrdiff_t count, const double *matrices, double *values,
    and for the equations. */
 void roots_of_motion(int n, int count_held, const int32_t *held, ptrdiff_t count, const double *const *matrices, double *values, double *vectors, unsigned char *handed_over, lanes *work)
 {
-    int states = n + count_held, wide = 2 * n + count_held;
+    int states = n + count_held;
     ptrdiff_t size = (ptrdiff_t)states * states;
     struct room room = room_of(states, work, vectors != NULL);
     lanes *h = room.h, *state_matrix = work + 4 * size + 4 * states, *equations = state_matrix + size;
     for (ptrdiff_t first = 0; first < count; first += LANES) {
-        load_equations(n, count_held, held, first, count, matrices, equations);
-        whole failed = eliminate(n, wide, equations);
-        for (int i = 0; i < count_held; i++)
-            for (int j = 0; j < states; j++) h[i * states + j] = all(j == count_held + held[i] ? 1.0 : 0.0);
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < states; j++) h[(count_held + i) * states + j] = -equations[i * wide + n + j];
+        whole failed = find_state_matrix(n, count_held, held, first, count, matrices, equations, h);
         if (vectors) memcpy(state_matrix, h, size * sizeof(lanes));
         lanes scale;
         failed |= solve(states, room, &scale);

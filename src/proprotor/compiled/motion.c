@@ -53,48 +53,79 @@ whole eliminate(int n, int columns, lanes *rows)
     return unsafe;
 }
 
-/* Matrices (points, size, size) of a rotor on its hub's six coordinates, on a support with `modes` coordinates whose hub
-   moves by `hub` (6, modes), with the support's own matrix added: (points, modes + size - 6, ...). */
-void on_support(ptrdiff_t points, int size, int modes, const double *rotor, const struct column *hub, const struct column *addition, double *found)
+whole find_state_matrix(int n, int count_held, const int32_t *held, ptrdiff_t first, ptrdiff_t count, const double *const *matrices, lanes *equations, lanes *h)
 {
-    enum { HUB = 6, MOST = 64 };
-    int others = size - HUB, n = modes + others;
-    lanes motion[HUB * MOST], columns[HUB * MOST];
-    for (ptrdiff_t point = 0; point < points; point += LANES) {
-        struct column own = {rotor, (ptrdiff_t)size * size, 1};
-        for (int k = 0; k < HUB * modes; k++) motion[k] = load(hub, point, points, k);
-        for (int i = 0; i < size; i++) {
-            lanes row[MOST];
-            for (int j = 0; j < modes; j++) row[j] = all(0.0);
-            for (int k = 0; k < HUB; k++) {
-                lanes here = load(&own, point, points, (ptrdiff_t)i * size + k);
-                for (int j = 0; j < modes; j++) row[j] += here * motion[k * modes + j];
-            }
-            for (int j = 0; j < others; j++) row[modes + j] = load(&own, point, points, (ptrdiff_t)i * size + HUB + j);
-            for (int j = 0; j < n; j++) {
-                if (i < HUB) columns[i * MOST + j] = row[j];
-                else store(row[j], found + (ptrdiff_t)(modes + i - HUB) * n + j, (ptrdiff_t)n * n, point, points);
-            }
-        }
-        for (int i = 0; i < modes; i++)
-            for (int j = 0; j < n; j++) {
-                lanes sum = j < modes ? load(addition, point, points, (ptrdiff_t)i * modes + j) : all(0.0);
-                for (int k = 0; k < HUB; k++) sum += motion[k * modes + i] * columns[k * MOST + j];
-                store(sum, found + (ptrdiff_t)i * n + j, (ptrdiff_t)n * n, point, points);
-            }
+    int states = n + count_held, wide = n + states;
+    load_equations(n, count_held, held, first, count, matrices, equations);
+    whole unsafe = eliminate(n, wide, equations);
+    for (int i = 0; i < count_held; i++)
+        for (int j = 0; j < states; j++) h[i * states + j] = all(j == count_held + held[i] ? 1.0 : 0.0);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < states; j++) h[(count_held + i) * states + j] = -equations[i * wide + n + j];
+    return unsafe;
+}
+
+/* State matrices (count, states, states) of equations of motion, as of `roots_of_motion`; `unsafe` marks those that
+   elimination in the order of the rows does not solve well. `work` has room for one of them and its equations. */
+void state_matrices(int n, int count_held, const int32_t *held, ptrdiff_t count, const double *const *matrices, double *found, unsigned char *unsafe, lanes *work)
+{
+    ptrdiff_t size = (ptrdiff_t)(n + count_held) * (n + count_held);
+    for (ptrdiff_t first = 0; first < count; first += LANES) {
+        whole failed = find_state_matrix(n, count_held, held, first, count, matrices, work + size, work);
+        store_row(work, found, size, first, count, size);
+        for (int lane = 0; lane < LANES && first + lane < count; lane++) unsafe[first + lane] = failed[lane] != 0;
     }
+}
+
+#define HUB 6 /* coordinates of a hub, the first of a rotor alone */
+#define MOST 64
+
+/* Put a matrix (points, size, columns) of a rotor alone on a support with `modes` coordinates, whose hub moves by `hub`
+   (6, modes): its rows, and its columns too if these are coordinates, not inputs. The support's own matrix is added. */
+static void put_on_support(ptrdiff_t points, int size, int columns, int modes, int are_inputs, const double *rotor, const struct column *hub, const struct column *addition, double *found)
+{
+    int rows = modes + size - HUB, moved = are_inputs ? 0 : HUB, first = are_inputs ? 0 : modes;
+    int wide = first + columns - moved;
+    ptrdiff_t own = (ptrdiff_t)size * columns, result = (ptrdiff_t)rows * wide;
+    for (ptrdiff_t point = 0; point < points; point += LANES) {
+        lanes motion[HUB * MOST], at_hub[HUB * MOST], row[MOST + HUB], sum[MOST];
+        load_row(hub->at, hub->point, point, points, (ptrdiff_t)HUB * modes, motion);
+        for (int i = 0; i < size; i++) {
+            lanes *into = i < HUB ? at_hub + i * MOST : sum;
+            load_row(rotor + (ptrdiff_t)i * columns, own, point, points, columns, row);
+            for (int j = 0; j < first; j++) into[j] = all(0.0);
+            for (int k = 0; k < moved; k++)
+                for (int j = 0; j < first; j++) into[j] += row[k] * motion[k * modes + j];
+            for (int j = first; j < wide; j++) into[j] = row[moved + j - first];
+            if (i >= HUB) store_row(sum, found + (ptrdiff_t)(modes + i - HUB) * wide, result, point, points, wide);
+        }
+        for (int i = 0; i < modes; i++) {
+            if (first) load_row(addition->at + (ptrdiff_t)i * modes, addition->point, point, points, first, sum);
+            for (int j = first; j < wide; j++) sum[j] = all(0.0);
+            for (int k = 0; k < HUB; k++)
+                for (int j = 0; j < wide; j++) sum[j] += motion[k * modes + i] * at_hub[k * MOST + j];
+            store_row(sum, found + (ptrdiff_t)i * wide, result, point, points, wide);
+        }
+    }
+}
+
+/* Matrices M, C, K (points, size, size) and, unless it is null, B (points, size, inputs) of a rotor alone on a support,
+   with the support's own M, C, K added: (points, modes + size - 6, ...). */
+void on_support(ptrdiff_t points, int size, int modes, int inputs, const double *const *rotor, const struct column *hub, const struct column *additions, double *const *found)
+{
+    for (int k = 0; k < 3; k++) put_on_support(points, size, size, modes, 0, rotor[k], hub, &additions[k], found[k]);
+    if (rotor[3]) put_on_support(points, size, inputs, modes, 1, rotor[3], hub, 0, found[3]);
 }
 
 /* Find in which mass matrices (points, n, n) every motion has mass for certain, by the pivots of M + its transpose. `rows`
    has room for n * n. */
 void have_mass(ptrdiff_t points, int n, const double *mass, unsigned char *found, lanes *rows)
 {
-    struct column own = {mass, (ptrdiff_t)n * n, 1};
     for (ptrdiff_t point = 0; point < points; point += LANES) {
         whole certain = every(-1);
+        load_row(mass, (ptrdiff_t)n * n, point, points, (ptrdiff_t)n * n, rows);
         for (int i = 0; i < n; i++)
-            for (int j = 0; j <= i; j++)
-                rows[i * n + j] = load(&own, point, points, i * n + j) + load(&own, point, points, j * n + i);
+            for (int j = 0; j <= i; j++) rows[i * n + j] += rows[j * n + i];
         for (int k = 0; k < n; k++) {
             /* Row k of the factor: its entries times their pivots, then divided by these. */
             lanes pivot = rows[k * n + k];

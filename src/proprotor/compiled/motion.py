@@ -3,41 +3,47 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 
 import numpy as np
 
-from proprotor.compiled.columns import address, column, lane_room
+from proprotor.compiled.columns import Column, address, column, lane_room, place_of
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
 MOST_ROWS = 64  # of motion.c, of the result
 
 
-def on_support(matrix: Array, hub: Array, addition: Array) -> Array:
-    """Return Tᵀ (...) T of matrices (points, size, size), T = diag(Φ, 1), plus a matrix of the support's coordinates.
+def on_support(matrices: Sequence[Array], hub: Array, additions: Sequence[Array]) -> list[Array]:
+    """Return Tᵀ (...) T of M, C, K, T = diag(Φ, 1), plus matrices of the support's coordinates; and Tᵀ B, if given.
 
     Parameters
     ----------
-    matrix : array (points, size, size)
+    matrices : arrays (points, size, size), and B (points, size, inputs) if there is one
         The hub's six coordinates first.
     hub : array (6, m) or (points, 6, m)
         Φ, motion of the hub with the support's coordinates.
-    addition : array (m, m) or (points, m, m)
+    additions : three arrays (m, m) or (points, m, m)
     """
-    points, size, _ = matrix.shape
+    given = [np.ascontiguousarray(matrix, dtype=float) for matrix in matrices]
+    points, size, inputs = given[-1].shape
     modes = hub.shape[-1]
-    n = modes + size - 6
-    found, kept = np.empty((points, n, n)), [np.ascontiguousarray(matrix, dtype=float)]
-    columns = [
-        column(part.reshape(*part.shape[:-2], part.shape[-2] * modes), kept) for part in (hub, addition)
-    ]
+    n, kept = modes + size - 6, list[Array]()
+    found = [np.empty((points, n, n if place < len(additions) else inputs)) for place in range(len(given))]
+    at_hub, *own = (
+        column(np.ascontiguousarray(part).reshape(*part.shape[:-2], part.shape[-2] * modes), kept)
+        for part in (hub, *additions)
+    )
+    pointers = ctypes.c_void_p * 4
     library().on_support(
         ctypes.c_ssize_t(points),
         ctypes.c_int(size),
         ctypes.c_int(modes),
-        address(kept[0]),
-        *map(ctypes.byref, columns),
-        address(found),
+        ctypes.c_int(inputs),
+        pointers(*(place_of(matrix)[0] for matrix in given)),
+        ctypes.byref(at_hub),
+        (Column * 3)(*own),
+        pointers(*(place_of(matrix)[0] for matrix in found)),
     )
     return found
 
@@ -49,3 +55,24 @@ def have_mass(mass: Array) -> Array:
     room = lane_room(n * n)
     library().have_mass(ctypes.c_ssize_t(points), ctypes.c_int(n), *map(address, (given, found, room)))
     return found
+
+
+def state_matrices(mass: Array, damping: Array, stiffness: Array, held: Sequence[int]) -> tuple[Array, Array]:
+    """Return state matrices (points, states, states) of equations of motion (points, n, n), and which are not solved.
+
+    `held` are the coordinates whose displacement is a state. The mass matrix of a point that is not solved takes
+    exchanges of rows, or has no inverse: its numbers mean nothing.
+    """
+    points, n, _ = mass.shape
+    states, places = n + len(held), np.array(held, dtype=np.int32)
+    given = [np.ascontiguousarray(part, dtype=float) for part in (mass, damping, stiffness)]
+    found, unsafe = np.empty((points, states, states)), np.empty(points, dtype=bool)
+    library().state_matrices(
+        ctypes.c_int(n),
+        ctypes.c_int(len(held)),
+        address(places),
+        ctypes.c_ssize_t(points),
+        (ctypes.c_void_p * 3)(*(place_of(part)[0] for part in given)),
+        *map(address, (found, unsafe, lane_room(states * states + n * (n + states)))),
+    )
+    return found, unsafe

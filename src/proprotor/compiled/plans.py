@@ -11,35 +11,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from proprotor.compiled.columns import Column, address, column
+from proprotor.compiled.columns import address, place_of
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
 _POWERS = 3
 _ALONG = (
-    "radius",
-    "chord",
-    "twist",
-    "square_ratio",
-    "cube_ratio",
-    "lift_slope",
-    "zero_lift_angle",
-    "drag",
-    "moment",
+    *("radius", "chord", "twist", "bent", "square_ratio", "cube_ratio"),
+    *("lift_slope", "zero_lift_angle", "drag", "moment"),
 )
-
-
-@cache
-def _blade_of(plans: ModuleType) -> type[ctypes.Structure]:
-    """Return the type of a blade at many points, see points.h, with the quantities of some plans."""
-    fields = (
-        ("segments", ctypes.c_ssize_t),
-        ("ends", ctypes.c_void_p),
-        ("quantities", Column * len(plans.QUANTITIES)),
-        *((name, Column) for name in _ALONG),
-        ("weights", Column * _POWERS),
-    )
-    return type("Blade", (ctypes.Structure,), {"_fields_": fields})
+_OF_POINTS = ("tip", "load", "collective", "structural_offset")
+_FIRST_STATIONS, _FIRST_POINTS = (
+    2,
+    2 + 3 * (len(_ALONG) + _POWERS),
+)  # words of the record of blades, see points.h
 
 
 class _Layout(ctypes.Structure):
@@ -56,9 +41,30 @@ class _Search(ctypes.Structure):
         ("unknowns", ctypes.c_void_p),
         ("rows", ctypes.c_void_p),
         *((name, ctypes.c_int32) for name in ("target", "diagonal", "unloaded", "most", "ends_near")),
-        ("load", Column),
-        ("structural_offset", Column),
         *((name, _Layout) for name in ("residual", "slopes", "work", "work_slopes", "precone")),
+    )
+
+
+class _Limits(ctypes.Structure):
+    """What keeps a point from being without reservation, see whole.h."""
+
+    _fields_ = (
+        *(
+            (name, ctypes.c_double)
+            for name in ("angle", "from_air", "induced", "incidence", "mach", "no_spring")
+        ),
+        ("finds_collective", ctypes.c_int32),
+        ("lag_is_free", ctypes.c_int32),
+        ("sprung", ctypes.c_ubyte * 4),
+    )
+
+
+class _Rotors(ctypes.Structure):
+    """Results of `rotors_in_flight`, see whole.h."""
+
+    _fields_ = (
+        *((name, ctypes.c_void_p) for name in ("state", "thrust", "torque", "iterations", "served")),
+        ("matrices", ctypes.c_void_p * 4),
     )
 
 
@@ -101,6 +107,32 @@ class Balanced(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Stations:
+    """Stations of blades in memory: the first of each segment and one behind the last, a column for each quantity."""
+
+    ends: Array
+    columns: Array
+    kept: list[Array]
+
+    @classmethod
+    def of(cls, ends: Sequence[int], along: Mapping[str, Any], weights: Array) -> Stations:
+        """Return stations.
+
+        Parameters
+        ----------
+        ends : sequence of int
+        along : mapping
+            Numbers, or arrays (stations,) or (n, stations), of radius, chord, twist, what an effective twist leaves
+            out, the ratios of chords, and the numbers of the airfoil.
+        weights : array (stations, 3) or (n, stations, 3)
+        """
+        kept = [np.asarray(along[name], dtype=float) for name in _ALONG]
+        kept += [np.asarray(weights[..., power], dtype=float) for power in range(_POWERS)]
+        columns = np.array([place_of(array) for array in kept], dtype=np.intp)
+        return cls(np.array(ends, dtype=np.intp), columns, kept)
+
+
+@dataclass(frozen=True)
 class Blades:
     """Blades at many points, as `balance_of_blade` and `search_trim` take them.
 
@@ -108,41 +140,68 @@ class Blades:
         Numbers or arrays (n,) by name.
     sides : mapping
         Quantities of the segments, (segments,).
-    ends : sequence of int
-        The first station of each segment, and one behind the last.
-    along : mapping
-        Numbers, or arrays (stations,) or (n, stations), of radius, chord, twist, the ratios of chords, and the numbers
-        of the airfoil.
-    weights : array (stations, 3) or (n, stations, 3)
+    stations : Stations
+    of_points : mapping
+        Numbers or arrays (n,): radius of the tip, and for a search the load of the row that closes the trim, a given
+        collective, and the offset of the structural pitch.
     """
 
     quantities: Mapping[str, Any]
     sides: Mapping[str, Array]
-    ends: Sequence[int]
-    along: Mapping[str, Any]
-    weights: Array
+    stations: Stations
+    of_points: Mapping[str, Any]
 
-    def structure(self, plans: ModuleType) -> tuple[Any, list[Array]]:
-        """Return the blades for the library, and the arrays that it points at."""
-        blade, kept = _blade(plans, self.quantities, self.sides)
-        places = np.array(self.ends, dtype=np.intp)
-        kept.append(places)
-        blade.ends, blade.segments = places.ctypes.data, len(self.ends) - 1
-        for name in _ALONG:
-            setattr(blade, name, column(self.along[name], kept))
-        for power in range(_POWERS):
-            blade.weights[power] = column(self.weights[..., power], kept)
-        return blade, kept
+    def record(self, plans: ModuleType) -> tuple[Array, list[Array]]:
+        """Return the blades as the library takes them, see points.h, and the arrays that the record points at."""
+        names = (*_OF_POINTS, *plans.QUANTITIES)
+        columns, kept = _columns(names, {**self.quantities, **self.of_points}, self.sides)
+        record = np.empty(_FIRST_POINTS + columns.size, dtype=np.intp)
+        record[0], record[1] = len(self.stations.ends) - 1, self.stations.ends.ctypes.data
+        record[_FIRST_STATIONS:_FIRST_POINTS] = self.stations.columns.ravel()
+        record[_FIRST_POINTS:] = columns.ravel()
+        return record, kept
+
+
+def _columns(
+    names: Sequence[str], quantities: Mapping[str, Any], segments: Mapping[str, Any]
+) -> tuple[Array, list[Array]]:
+    """Return columns (names, 3) of quantities, numbers or arrays (n,), and of segments, and what they point at.
+
+    Numbers stand side by side in an array of their own. A quantity that is missing is zero.
+    """
+    numbers, arrays = [0.0] * len(names), dict[int, Array]()
+    for place, name in enumerate(names):
+        value = segments[name] if name in segments else quantities.get(name, 0.0)
+        if type(value) is float:  # as most are: to ask about arrays takes longer
+            numbers[place] = value
+        elif np.ndim(value):
+            array = np.asarray(value, dtype=float)
+            arrays[place] = array if name in segments else array[..., None]
+        else:
+            numbers[place] = float(value)
+    memory = np.array(numbers)
+    columns = _side_by_side(len(names)).copy()
+    columns[:, 0] += memory.__array_interface__["data"][0]
+    for place, array in arrays.items():
+        columns[place] = place_of(array)
+    return columns, [memory, *arrays.values()]
+
+
+@cache
+def _side_by_side(count: int) -> Array:
+    """Return columns (count, 3) of numbers that all points share, from the place of the first of them on."""
+    columns = np.zeros((count, 3), dtype=np.intp)
+    columns[:, 0] = np.dtype(float).itemsize * np.arange(count)
+    return columns
 
 
 @dataclass(frozen=True)
 class Search:
     """A search for trims: the free unknowns, the rows that close them, and how it begins and ends.
 
-    unknowns, rows : sequence of int
+    unknowns, rows : tuple of int
     target : int
-        The row with a load, array (n,) or number.
-    structural_offset : array (n,) or number
+        The row with a load.
     diagonal : bool
         Whether springs have no flap-lag stiffness.
     unloaded : bool
@@ -153,15 +212,58 @@ class Search:
         Number of steps at most.
     """
 
-    unknowns: Sequence[int]
-    rows: Sequence[int]
+    unknowns: tuple[int, ...]
+    rows: tuple[int, ...]
     target: int
-    load: Any
-    structural_offset: Any
     diagonal: bool
     unloaded: bool
     ends_near: bool
     most: int
+
+
+class Limits(NamedTuple):
+    """What keeps a point from being without reservation.
+
+    angle : of coning, lag and elastic pitch, rad.
+    from_air : of the collective from the direction of the air, rad.
+    induced : thrust in that of a disk that turns the air by its whole speed.
+    incidence, mach : angle of attack, rad, and Mach number of outboard sections.
+    no_spring : lag spring in the flap spring that holds nothing.
+    finds_collective, lag_is_free : bool
+    sprung : tuple of bool
+        Which of the free unknowns are those of flap and lag.
+    """
+
+    angle: float
+    from_air: float
+    induced: float
+    incidence: float
+    mach: float
+    no_spring: float
+    finds_collective: bool
+    lag_is_free: bool
+    sprung: tuple[bool, ...]
+
+
+class InFlight(NamedTuple):
+    """Rotors at n points; the numbers of points that are not `served` mean nothing.
+
+    served : array (n,)
+    state : array (4, n)
+        Unknowns of the trim.
+    thrust, torque : array (n,)
+        Of the rotor.
+    iterations : array (n,)
+    matrices : dict
+        M, C, K and B (n, rows, columns).
+    """
+
+    served: Array
+    state: Array
+    thrust: Array
+    torque: Array
+    iterations: Array
+    matrices: dict[str, Array]
 
 
 class Searched(NamedTuple):
@@ -194,24 +296,16 @@ def search_trim(
 ) -> Searched:
     """Move states (4, n) of the wanted points (n,) to their trims, and count the steps of each point (n,)."""
     points, k = state.shape[-1], len(search.unknowns)
-    blade, kept = blades.structure(plans)
-    unknowns, rows = (np.array(places, dtype=np.int32) for places in (search.unknowns, search.rows))
-    given = _Search(k, unknowns.ctypes.data, rows.ctypes.data, search.target)
-    for name in ("diagonal", "unloaded", "most", "ends_near"):
-        setattr(given, name, int(getattr(search, name)))
-    for name in ("load", "structural_offset"):
-        value = np.asarray(getattr(search, name), dtype=float)
-        setattr(given, name, column(value[..., None] if value.ndim else value, kept))
-    for name, table in _layouts_of_trim(plans).items():
-        setattr(given, name, table)
+    record, kept = blades.record(plans)
+    segments, stations = len(blades.stations.ends) - 1, int(blades.stations.ends[-1])
     arrived = wanted.copy()
     found = Searched(arrived, *np.full((2, 2, points, k, k), np.nan))
     if not search.ends_near:
         found = found._replace(
             before=np.full((4, points), np.nan),
             work=np.full((points, 5), np.nan),
-            moments=np.full((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.ends) - 1, points), np.nan),
-            doubts=np.full((2, points, blades.ends[-1]), np.nan),
+            moments=np.full((len(plans.SECTION_LOADS) - 2, _POWERS, segments, points), np.nan),
+            doubts=np.full((2, points, stations), np.nan),
         )
     parts = found._asdict()
     del parts["arrived"]
@@ -220,9 +314,56 @@ def search_trim(
         state=state.ctypes.data, iterations=iterations.ctypes.data, active=arrived.ctypes.data, **places
     )
     _function(plans, "search_trim")(
-        ctypes.c_ssize_t(points), ctypes.byref(blade), ctypes.byref(given), ctypes.byref(results)
+        ctypes.c_ssize_t(points),
+        address(record),
+        ctypes.byref(_search_of(plans, search)),
+        ctypes.byref(results),
     )
+    del kept
     return found
+
+
+def rotors_in_flight(
+    plans: ModuleType,
+    points: int,
+    blades: Blades,
+    stages: tuple[Search, Search],
+    limits: Limits,
+    shapes: Mapping[str, tuple[int, int]],
+) -> InFlight:
+    """Return trim and matrices of the rotors without any reservation, in one call.
+
+    Parameters
+    ----------
+    plans : module
+    points : int
+    blades : Blades
+    stages : two of Search
+        From the undeflected blade near the trim, and on to the trim.
+    limits : Limits
+    shapes : mapping
+        Rows and columns of M, C, K and B.
+    """
+    record, kept = blades.record(plans)
+    numbers = np.empty((6, points))
+    counts, served = np.empty(points, dtype=np.int64), np.empty(points, dtype=bool)
+    matrices = {name: np.empty((points, *shape)) for name, shape in shapes.items()}
+    state, thrust, torque = numbers[:4], numbers[4], numbers[5]
+    arrays = (state, thrust, torque, counts, served, *matrices.values())
+    places = np.array([array.__array_interface__["data"][0] for array in arrays], dtype=np.intp)
+    near, last = (ctypes.byref(_search_of(plans, stage)) for stage in stages)
+    _function(plans, "rotors_in_flight")(
+        ctypes.c_ssize_t(points),
+        address(record),
+        near,
+        last,
+        ctypes.byref(_limits_of(limits)),
+        ctypes.byref(_layouts(plans)),
+        address(_moment_places(plans)),
+        address(places),
+    )
+    del kept
+    return InFlight(served, state, thrust, torque, counts, matrices)
 
 
 def balance_of_blade(
@@ -242,15 +383,14 @@ def balance_of_blade(
     doubts : bool
         Whether to return angles of attack and Mach numbers.
     """
-    blade, kept = blades.structure(plans)
+    record, kept = blades.record(plans)
     structure = np.empty((points, len(_results(plans.BALANCE))))
     work = np.empty((points, len(_results(plans.WORK))))
-    moments = np.empty((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.ends) - 1, points))
-    found = np.empty((2, points, blades.ends[-1])) if doubts else None
+    moments = np.empty((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.stations.ends) - 1, points))
+    found = np.empty((2, points, int(blades.stations.ends[-1]))) if doubts else None
     _function(plans, "balance_of_blade")(
         ctypes.c_ssize_t(points),
-        ctypes.byref(blade),
-        *map(address, (structure, work, moments)),
+        *map(address, (record, structure, work, moments)),
         None if found is None else address(found),
     )
     del kept
@@ -265,12 +405,14 @@ def matrices_of_rotor(
     shapes: Mapping[str, tuple[int, int]],
 ) -> dict[str, Array]:
     """Return M, C, K and B (n, rows, columns) of a rotor from its quantities and those of its segments in the air."""
-    blade, kept = _blade(plans, quantities, segments or {})
-    blade.segments = 0 if segments is None else len(segments["beyond_flap_hinge"])
+    columns, kept = _columns(plans.QUANTITIES, quantities, segments or {})
+    record = np.zeros(_FIRST_POINTS + 3 * len(_OF_POINTS) + columns.size, dtype=np.intp)
+    record[0] = 0 if segments is None else len(segments["beyond_flap_hinge"])
+    record[-columns.size :] = columns.ravel()
     found = {name: np.empty((points, *shape)) for name, shape in shapes.items()}
     addresses = (ctypes.c_void_p * len(found))(*(matrix.ctypes.data for matrix in found.values()))
     _function(plans, "matrices_of_rotor")(
-        ctypes.c_ssize_t(points), ctypes.byref(blade), ctypes.byref(_layouts(plans)), ctypes.byref(addresses)
+        ctypes.c_ssize_t(points), address(record), ctypes.byref(_layouts(plans)), ctypes.byref(addresses)
     )
     del kept
     return found
@@ -281,19 +423,32 @@ def _function(plans: ModuleType, name: str) -> Any:
     return getattr(library(), f"{plans.__name__.rpartition('.')[2]}_{name}")
 
 
-def _blade(
-    plans: ModuleType, quantities: Mapping[str, Any], segments: Mapping[str, Any]
-) -> tuple[Any, list[Array]]:
-    """Return a blade with its quantities, and the arrays that it points at."""
-    blade, kept = _blade_of(plans)(), list[Array]()
-    for place, name in enumerate(plans.QUANTITIES):
-        if name in segments:
-            value = np.asarray(segments[name], dtype=float)
-            blade.quantities[place] = column(value, kept)
-        elif name in quantities:
-            value = np.asarray(quantities[name], dtype=float)
-            blade.quantities[place] = column(value[..., None] if value.ndim else value, kept)
-    return blade, kept
+@cache
+def _search_of(plans: ModuleType, search: Search) -> _Search:
+    """Return a search as the library takes it."""
+    unknowns, rows = (np.array(places, dtype=np.int32) for places in (search.unknowns, search.rows))
+    _TABLES.extend((unknowns, rows))
+    found = _Search(len(search.unknowns), unknowns.ctypes.data, rows.ctypes.data, search.target)
+    for name in ("diagonal", "unloaded", "most", "ends_near"):
+        setattr(found, name, int(getattr(search, name)))
+    for name, table in _layouts_of_trim(plans).items():
+        setattr(found, name, table)
+    return found
+
+
+@cache
+def _limits_of(limits: Limits) -> _Limits:
+    """Return limits as the library takes them."""
+    *numbers, sprung = limits
+    return _Limits(*numbers, (ctypes.c_ubyte * 4)(*sprung))
+
+
+@cache
+def _moment_places(plans: ModuleType) -> Array:
+    """Return the places of the radial moments of the loads among the quantities, -1 for one that no plan takes."""
+    known = {name: place for place, name in enumerate(plans.QUANTITIES)}
+    names = [f"{load}_{power}" for load in plans.SECTION_LOADS[:-2] for power in range(_POWERS)]
+    return np.array([known.get(name, -1) for name in names], dtype=np.int32)
 
 
 @cache

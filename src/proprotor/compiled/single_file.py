@@ -2,7 +2,8 @@
 
     python -m proprotor.compiled.single_file FOLDER
 
-The folder gets `proprotor.h`, `proprotor.c` and `proprotor.f90`, a module of Fortran with the interface.
+The folder gets `proprotor.h`, `proprotor.c`, `proprotor.f90`, a module of Fortran with the interface, and
+`proprotor_mex.c`, a function of MATLAB and Octave.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ _PARTS = (
     "eigenvalues.c",
     "interface.c",
 )
+_INTERFACES = ("proprotor.h", "proprotor.f90", "matlab/proprotor_mex.c")  # files that are copied
 _OWN_INCLUDE = re.compile(r'^#include "(?!proprotor\.h).*"\n', re.MULTILINE)
 _SHARED = re.compile(
     r"^(?=(?:whole|void) \w+\()", re.MULTILINE
@@ -49,7 +51,7 @@ def single_source() -> str:
 
 
 def write_single_file(folder: str | os.PathLike[str]) -> list[Path]:
-    """Write header, source and module of Fortran into a folder, which is made where it is missing.
+    """Write header, source, module of Fortran and function of MATLAB into a folder, which is made where it is missing.
 
     Parameters
     ----------
@@ -67,7 +69,8 @@ def write_single_file(folder: str | os.PathLike[str]) -> list[Path]:
     """
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
-    texts = {name: (SOURCES / name).read_text(encoding="utf-8") for name in ("proprotor.h", "proprotor.f90")}
+    sources = [SOURCES / name for name in _INTERFACES]
+    texts = {source.name: source.read_text(encoding="utf-8") for source in sources}
     texts["proprotor.c"] = single_source()
     for name, text in texts.items():
         _write_text(place / name, text)

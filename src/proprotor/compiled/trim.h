@@ -1,7 +1,9 @@
 /* Newton's method for the trim of many blades, one in each lane, until each lane has arrived. */
 
+#include "bounds.h"
+
 #define BALANCES 5 /* flap, lag, pitch, torque, thrust */
-#define UNKNOWNS 4 /* coning, lag, elastic pitch, collective */
+#define UNKNOWNS MOST_UNKNOWNS /* coning, lag, elastic pitch, collective */
 #define COLLECTIVE 3
 #define LARGEST_STEP 0.3 /* rad, as all numbers here, which are those of trim_balance.py and trim_solver.py */
 #define CONVERGED 1e-13
@@ -15,14 +17,22 @@ struct search {
     const int32_t *unknowns, *rows;
     int32_t target, diagonal, unloaded, most;
     int32_t ends_near; /* whether a lane arrives near the trim, where the next step would be negligible */
-    struct column load, structural_offset;
     struct layout residual, slopes, work, work_slopes, precone;
 };
 
-/* The balance at a state: of the free unknowns, residual and slopes with all of the airloads, and the airloads' part. */
+/* The balance at a state: of the free unknowns, residual and slopes; the work of the airloads on all rows. */
 struct linear {
-    lanes residual[UNKNOWNS], full[UNKNOWNS][UNKNOWNS], airloads[UNKNOWNS][UNKNOWNS];
-    lanes work[BALANCES], work_slopes[BALANCES][UNKNOWNS];
+    lanes residual[UNKNOWNS], work[BALANCES], work_slopes[BALANCES][UNKNOWNS];
+    struct slopes slopes;
+};
+
+/* A search in the lanes: state, and state, balance, loads, step and air of the last step; slopes at the first step. */
+struct walk {
+    lanes state[UNKNOWNS], before[UNKNOWNS], moments[LOADS * POWERS * MOST_SEGMENTS], step[UNKNOWNS];
+    struct linear last;
+    struct slopes first;
+    whole steps, arrived;
+    lanes angle, mach;
 };
 
 static void set_state(const struct search *search, const lanes *state, lanes offset, lanes *q)
@@ -60,8 +70,8 @@ static void linearise(const struct search *search, const lanes *structure, const
         if (row == search->target) at->residual[i] += load;
         for (int k = 0; k < search->count; k++) {
             lanes own = at->work_slopes[row][k];
-            at->full[i][k] = slopes[row * UNKNOWNS + search->unknowns[k]] + own;
-            at->airloads[i][k] = search->unknowns[i] == COLLECTIVE ? all(0.0) : own;
+            at->slopes.full[i][k] = slopes[row * UNKNOWNS + search->unknowns[k]] + own;
+            at->slopes.airloads[i][k] = search->unknowns[i] == COLLECTIVE ? all(0.0) : own;
         }
     }
 }
@@ -71,7 +81,7 @@ static void solve_step(int count, const struct linear *at, lanes *step)
 {
     lanes rows[UNKNOWNS * (UNKNOWNS + 1)];
     for (int i = 0; i < count; i++) {
-        for (int j = 0; j < count; j++) rows[i * (count + 1) + j] = at->full[i][j];
+        for (int j = 0; j < count; j++) rows[i * (count + 1) + j] = at->slopes.full[i][j];
         rows[i * (count + 1) + count] = at->residual[i];
     }
     solve_rows(count, count + 1, rows);
@@ -82,25 +92,95 @@ static void solve_step(int count, const struct linear *at, lanes *step)
     }
 }
 
+/* Add the part of precone to the residual of the undeflected blade. */
+static void add_precone_load(const struct search *search, lanes *q, struct linear *at)
+{
+    lanes results[PRECONE_LOAD_RESULTS], own[BALANCES];
+    precone_load(q, results);
+    fill(&search->precone, results, own);
+    for (int i = 0; i < search->count; i++)
+        if (search->unknowns[i] != COLLECTIVE) at->residual[i] += own[search->rows[i]];
+}
+
+/* Return where a step is the last, by its size and the size of the step before. */
+static whole is_last(const struct search *search, lanes size, lanes before)
+{
+    whole last = (size <= CONVERGED) | ((size <= STALLED) & (size >= 0.5 * before));
+    if (!search->ends_near) return last;
+    lanes ratio = size / (before * before), next = size * size * larger(ratio, all(1.0));
+    return (size <= NEAR) & (last | (next <= ALMOST));
+}
+
+/* Set some lanes of numbers to others. */
+static void keep(whole where, size_t bytes, const void *others, void *numbers)
+{
+    const lanes *from = others;
+    lanes *to = numbers;
+    for (size_t k = 0; k < bytes / sizeof(lanes); k++) to[k] = choose(where, from[k], to[k]);
+}
+
+/* Search the trims of the active lanes from the state of the walk on; q holds the quantities of the blade. */
+static void walk_to_trim(const struct blade *blade, ptrdiff_t point, ptrdiff_t points, const struct search *search, whole active, lanes *q, struct walk *walk, double *stations)
+{
+    lanes structure[BALANCE_RESULTS], done[WORK_RESULTS], moments[LOADS * POWERS * MOST_SEGMENTS];
+    lanes size_before = all(INFINITY), load_here = load(&blade->load, point, points, 0);
+    lanes offset = load(&blade->structural_offset, point, points, 0), precone = q[Q_PRECONE];
+    walk->steps = walk->arrived = every(0);
+    for (int count = 0; count < search->most && any(active); count++) {
+        struct linear at = {0};
+        struct air air = {active, stations, {0}, {0}};
+        lanes step[UNKNOWNS] = {{0}}, size = {0};
+        int unloaded = search->unloaded && count == 0;
+        q[Q_PRECONE] = unloaded ? all(0.0) : precone;
+        set_state(search, walk->state, offset, q);
+        evaluate(blade, point, points, q, structure, done, moments, &air);
+        linearise(search, structure, done, load_here, &at);
+        q[Q_PRECONE] = precone;
+        if (unloaded) add_precone_load(search, q, &at);
+        solve_step(search->count, &at, step);
+        if (count == 0) walk->first = at.slopes;
+        keep(active, sizeof at, &at, &walk->last);
+        keep(active, sizeof step, step, walk->step);
+        keep(active, sizeof walk->state, walk->state, walk->before);
+        keep(active, LOADS * POWERS * blade->segments * sizeof(lanes), moments, walk->moments);
+        keep(active, sizeof(lanes), &air.angle, &walk->angle);
+        keep(active, sizeof(lanes), &air.mach, &walk->mach);
+        for (int k = 0; k < search->count; k++) {
+            lanes *own = &walk->state[search->unknowns[k]];
+            *own = choose(active, *own - step[k], *own);
+            size = choose(magnitude(step[k]) <= size, size, magnitude(step[k])); /* NaN stays */
+        }
+        whole last = is_last(search, size, size_before);
+        walk->steps += active & 1;
+        size_before = choose(active, size, size_before);
+        walk->arrived |= active & last;
+        active &= ~last & (size == size);
+    }
+}
+
+/* Return the work of the airloads on a row after the last step. */
+static lanes work_after(const struct search *search, const struct walk *walk, int row)
+{
+    lanes found = walk->last.work[row];
+    for (int k = 0; k < search->count; k++) found += walk->last.work_slopes[row][k] * walk->step[k];
+    return found;
+}
+
 /* Results of a search, (points) or (..., points): the state before the last step, slopes at the first and the last step
-   (2, count, count), work and its slopes, the moments of the loads, doubts as in `balance_of_blade`. */
+   (2, count, count), work after the last step, the moments of the loads, doubts as in `balance_of_blade`. */
 struct found {
     double *state, *before, *first, *last, *work, *moments, *doubts;
     int64_t *iterations;
     unsigned char *active; /* in: the points that are searched; out: those that arrived */
 };
 
-static void store_slopes(const struct search *search, const struct linear *at, whole where, double *slopes, ptrdiff_t point, ptrdiff_t points)
+static void store_slopes(ptrdiff_t n, const struct slopes *at, whole where, double *slopes, ptrdiff_t point, ptrdiff_t points)
 {
-    ptrdiff_t n = search->count, size = n * n;
-    for (int lane = 0; lane < LANES && point + lane < points; lane++) {
-        if (!where[lane]) continue;
-        for (ptrdiff_t i = 0; i < n; i++)
-            for (ptrdiff_t k = 0; k < n; k++) {
-                slopes[(point + lane) * size + i * n + k] = at->full[i][k][lane];
-                slopes[(points + point + lane) * size + i * n + k] = at->airloads[i][k][lane];
-            }
-    }
+    for (ptrdiff_t i = 0; i < n; i++)
+        for (ptrdiff_t k = 0; k < n; k++) {
+            store_where(where, at->full[i][k], slopes + i * n + k, n * n, point, points);
+            store_where(where, at->airloads[i][k], slopes + (points * n + i) * n + k, n * n, point, points);
+        }
 }
 
 /* Search the trims of points from their states on. */
@@ -108,66 +188,29 @@ void FOR(search_trim)(ptrdiff_t points, const struct blade *blade, const struct 
 {
     ptrdiff_t count_moments = LOADS * POWERS * blade->segments;
     for (ptrdiff_t point = 0; point < points; point += LANES) {
-        whole active = every(0), arrived = every(0);
+        whole active = every(0);
         for (int lane = 0; lane < LANES && point + lane < points; lane++) active[lane] = -(int64_t)(found->active[point + lane] != 0);
         if (!any(active)) continue;
-        lanes q[QUANTITIES], state[UNKNOWNS], structure[BALANCE_RESULTS], done[WORK_RESULTS], moments[LOADS * POWERS * MOST_SEGMENTS];
-        lanes size_before = all(INFINITY), load_here = load(&search->load, point, points, 0);
-        lanes offset = load(&search->structural_offset, point, points, 0);
-        whole steps = every(0);
+        lanes q[QUANTITIES];
+        struct walk walk = {{{0}}};
         for (int k = 0; k < UNKNOWNS; k++) {
             struct column own = {found->state + k * points, 1, 0};
-            state[k] = load(&own, point, points, 0);
+            walk.state[k] = load(&own, point, points, 0);
         }
         load_quantities(blade, point, points, q);
-        lanes precone = q[Q_PRECONE];
-        for (int count = 0; count < search->most && any(active); count++) {
-            struct linear at;
-            lanes step[UNKNOWNS] = {{0}}, size = {0};
-            int unloaded = search->unloaded && count == 0;
-            q[Q_PRECONE] = unloaded ? all(0.0) : precone;
-            set_state(search, state, offset, q);
-            evaluate(blade, point, points, q, structure, done, moments, active, found->doubts);
-            linearise(search, structure, done, load_here, &at);
-            if (unloaded) {
-                lanes results[PRECONE_LOAD_RESULTS], own[BALANCES];
-                q[Q_PRECONE] = precone;
-                precone_load(q, results);
-                fill(&search->precone, results, own);
-                for (int i = 0; i < search->count; i++)
-                    if (search->unknowns[i] != COLLECTIVE) at.residual[i] += own[search->rows[i]];
-            }
-            solve_step(search->count, &at, step);
-            if (found->first && count == 0) store_slopes(search, &at, active, found->first, point, points);
-            store_slopes(search, &at, active, found->last, point, points);
-            if (found->before) {
-                for (int k = 0; k < UNKNOWNS; k++) store_where(active, state[k], found->before + k * points, 1, point, points);
-                for (int row = 0; row < BALANCES; row++) {
-                    lanes after = at.work[row];
-                    for (int k = 0; k < search->count; k++) after += at.work_slopes[row][k] * step[k];
-                    store_where(active, after, found->work + row, BALANCES, point, points);
-                }
-                for (ptrdiff_t k = 0; k < count_moments; k++) store_where(active, moments[k], found->moments + k * points, 1, point, points);
-            }
-            for (int k = 0; k < search->count; k++) {
-                lanes *own = &state[search->unknowns[k]];
-                *own = choose(active, *own - step[k], *own);
-                size = choose(magnitude(step[k]) <= size, size, magnitude(step[k])); /* NaN stays */
-            }
-            whole last = (size <= CONVERGED) | ((size <= STALLED) & (size >= 0.5 * size_before));
-            if (search->ends_near) {
-                lanes ratio = size / (size_before * size_before), next = size * size * larger(ratio, all(1.0));
-                last = (size <= NEAR) & (last | (next <= ALMOST));
-            }
-            steps += active & 1;
-            size_before = choose(active, size, size_before);
-            arrived |= active & last;
-            active &= ~last & (size == size);
+        walk_to_trim(blade, point, points, search, active, q, &walk, found->doubts);
+        store_slopes(search->count, &walk.first, active, found->first, point, points);
+        store_slopes(search->count, &walk.last.slopes, active, found->last, point, points);
+        for (int k = 0; k < UNKNOWNS; k++) store(walk.state[k], found->state + k * points, 1, point, points);
+        if (found->before) {
+            for (int k = 0; k < UNKNOWNS; k++) store_where(active, walk.before[k], found->before + k * points, 1, point, points);
+            for (int row = 0; row < BALANCES; row++)
+                store_where(active, work_after(search, &walk, row), found->work + row, BALANCES, point, points);
+            for (ptrdiff_t k = 0; k < count_moments; k++) store_where(active, walk.moments[k], found->moments + k * points, 1, point, points);
         }
-        for (int k = 0; k < UNKNOWNS; k++) store(state[k], found->state + k * points, 1, point, points);
         for (int lane = 0; lane < LANES && point + lane < points; lane++) {
-            found->iterations[point + lane] += steps[lane];
-            found->active[point + lane] = arrived[lane] != 0;
+            found->iterations[point + lane] += walk.steps[lane];
+            found->active[point + lane] = walk.arrived[lane] != 0;
         }
     }
 }

@@ -6,12 +6,17 @@ import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from proprotor.case import Case
 from proprotor.datum import deck_unit
 from proprotor.deck.describe import deck_fields, plain_path
 from proprotor.deck.vary import check_input, design_inputs
 from proprotor.plots.input_names import short_name
 from proprotor.plots.line_of_sweep import written
+from proprotor.stability.parameter_lines import AIRSPEED
+from proprotor.typing import Array
+from proprotor.units import KNOT, KTAS
 
 _FIRST = (
     "rotor.precone",
@@ -103,6 +108,51 @@ def slider_input(case: Case, path: str) -> SliderInput:
     low, high = (float(f"{end:.3g}") for end in _range(path, value, number.unit, factor))
     meaning = _meanings().get(plain_path(path), "")
     return SliderInput(path, short_name(path), unit, meaning, factor, value, low, high)
+
+
+@dataclass(frozen=True, eq=False)
+class MapAxis:
+    """An axis of the stability map.
+
+    Attributes
+    ----------
+    path, label : str
+    factor : float
+        The unit of the axis in SI units.
+    values : array (points,)
+        SI, rising.
+    """
+
+    path: str
+    label: str
+    factor: float
+    values: Array
+
+
+def map_axis(case: Case, path: str, airspeeds: Array, value: float | None, points: int) -> MapAxis:
+    """Return the axis of an input over the range of its slider, or of the airspeed over the airspeeds of the page.
+
+    Parameters
+    ----------
+    case : Case
+    path : str
+        Of an input, or "airspeed".
+    airspeeds : array
+        m/s, of which the first and the last are the ends of an axis of airspeed.
+    value : float, optional
+        What the input is set to, SI; the axis reaches as far.
+    points : int
+
+    Raises
+    ------
+    InputError
+        For a path that is no input.
+    """
+    if path == AIRSPEED:
+        return MapAxis(path, f"Airspeed, {KTAS}", KNOT, np.linspace(airspeeds[0], airspeeds[-1], points))
+    slider = slider_input(case, path)
+    ends = [slider.low * slider.factor, slider.high * slider.factor, *([] if value is None else [value])]
+    return MapAxis(path, slider.label, slider.factor, np.linspace(min(ends), max(ends), points))
 
 
 def _range(path: str, value: float, si_unit: str, factor: float) -> tuple[float, float]:

@@ -124,17 +124,19 @@ def amounts(case: Configuration) -> tuple[Amount, ...]:
     )
 
 
-def blade_at_trims(case: Configuration) -> tuple[BladeAtTrim, ...]:
-    """Return the blade where the air meets 0.75 R at 10 to 50 deg, so that collective grows; failed trims are left out.
+def blade_at_trims(case: Configuration, airspeeds: Array | None = None) -> tuple[BladeAtTrim, ...]:
+    """Return the blade at the trim of some airspeeds; failed trims are left out.
 
     Parameters
     ----------
     case : Configuration
         A single design.
+    airspeeds : array (airspeeds,), optional
+        m/s; by default those at which the air meets 0.75 R at 10 to 50 deg, so that collective grows.
     """
     _check_single(case)
     rotor, omega = case.rotor, case.operation.rotor_speed
-    speeds = 0.75 * omega * rotor.radius * np.tan(_PITCHES)
+    speeds = 0.75 * omega * rotor.radius * np.tan(_PITCHES) if airspeeds is None else airspeeds
     held = rotor.pitch_inertia > 0 and rotor.control_stiffness > 0
     choice = case.model_options({"pitch": "dynamic" if held else "rigid"})
     options = parse_options(choice)

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from proprotor.compiled.motion import state_matrices
 from proprotor.errors import InputError
 from proprotor.model.batches import Rows, at_rows, few_at_once
 from proprotor.model.linear_model import LinearModel
@@ -54,13 +55,28 @@ def state_matrix(model: LinearModel) -> Array:
 
 def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
-    states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
-    matrix = np.empty((*shape, states, states), dtype=np.result_type(model.M, model.C, model.K))
-    for rows in few_at_once(shape):
-        first_order_at(model, rows, matrix[rows])
+    if model.is_compiled and not any(map(np.iscomplexobj, (model.M, model.C, model.K))):
+        matrix = _compiled(model)
+    else:
+        states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
+        matrix = np.empty((*shape, states, states), dtype=np.result_type(model.M, model.C, model.K))
+        for rows in few_at_once(shape):
+            first_order_at(model, rows, matrix[rows])
     for state, free in lacking_states(model):
         matrix[free, state, :] = np.nan
         matrix[free, :, state] = np.nan
+    return matrix
+
+
+def _compiled(model: LinearModel) -> Array:
+    """Return A by compiled functions, and by LAPACK where the mass matrix takes exchanges of rows."""
+    n, shape = len(model.dofs), model.M.shape[:-2]
+    mass, damping, stiffness = (part.reshape(-1, n, n) for part in (model.M, model.C, model.K))
+    matrix, left = state_matrices(mass, damping, stiffness, held_coordinates(model))
+    matrix = matrix.reshape(*shape, *matrix.shape[-2:])
+    if left.any():
+        points = left.reshape(shape)
+        matrix[points] = first_order_at(some_points(model, points), ...)
     return matrix
 
 

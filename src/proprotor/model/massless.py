@@ -31,7 +31,8 @@ def massless(mass: Array, compiled: bool = False) -> Array:
     if compiled and not np.iscomplexobj(mass):
         flat = mass.reshape(-1, *mass.shape[-2:])
         left = ~have_mass(flat)
-        left[left] = massless(flat[left])
+        if left.any():
+            left[left] = massless(flat[left])
         return np.asarray(left.reshape(mass.shape[:-2]))
     mass, found = np.real(mass), np.zeros(mass.shape[:-2], dtype=bool)
     for rows in few_at_once(found.shape):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -61,15 +61,9 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
     loads = [] if support.loads is None else [support.loads]
     shape = joint_shape(*(matrix.shape[:-2] for matrix in (*parts, *loads)))
     rotor_alone = broadcast(rotor_alone, shape)
-    matrices: dict[str, Any] = {
-        name: _on_support(getattr(rotor_alone, name), support.hub, addition, rotor_alone.is_compiled)
-        for name, addition in additions.items()
-    }
-    if rotor_alone.B is not None:
-        at_hub = np.swapaxes(support.hub, -1, -2) @ rotor_alone.B[..., : len(HUB), :]
-        matrices["B"] = np.concatenate([at_hub, rotor_alone.B[..., len(HUB) :, :]], axis=-2)
-        if support.loads is not None:
-            matrices["B"] = _with_inputs(matrices["B"], support.loads)
+    matrices: dict[str, Any] = _on_support(rotor_alone, support.hub, additions)
+    if rotor_alone.B is not None and support.loads is not None:
+        matrices["B"] = _with_inputs(matrices["B"], support.loads)
     still = np.zeros((*support.hub.shape[:-1], len(own)))
     coupled = replace(
         rotor_alone,
@@ -144,10 +138,19 @@ def with_warning(trim: Trim, warning: Array | None) -> Trim:
     return replace(trim, warning=joined.reshape(trim.warning.shape))
 
 
-def _on_support(matrix: Array, hub: Array, addition: Array, compiled: bool) -> Array:
-    """Return Tᵀ (...) T plus the support's matrix; T = diag(Φ, 1) does not change the rotor's own block."""
-    if compiled and _are_served(matrix, hub, addition):
-        return _compiled(matrix, hub, addition)
+def _on_support(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) -> dict[str, Array]:
+    """Return Tᵀ (...) T of M, C, K plus the support's, and Tᵀ B; T = diag(Φ, 1) leaves the rotor's own block."""
+    if rotor.is_compiled and _are_served(rotor, hub, additions):
+        return _compiled(rotor, hub, additions)
+    found = {name: _of_one(getattr(rotor, name), hub, addition) for name, addition in additions.items()}
+    if rotor.B is not None:
+        at_hub = np.swapaxes(hub, -1, -2) @ rotor.B[..., : len(HUB), :]
+        found["B"] = np.concatenate([at_hub, rotor.B[..., len(HUB) :, :]], axis=-2)
+    return found
+
+
+def _of_one(matrix: Array, hub: Array, addition: Array) -> Array:
+    """Return Tᵀ (...) T plus the support's matrix."""
     modes, hubs, shape = hub.shape[-1], len(HUB), matrix.shape[:-2]
     n = modes + matrix.shape[-1] - hubs
     kind = np.result_type(matrix, hub, addition)
@@ -163,23 +166,26 @@ def _on_support(matrix: Array, hub: Array, addition: Array, compiled: bool) -> A
     return whole
 
 
-def _are_served(matrix: Array, hub: Array, addition: Array) -> bool:
-    """Return whether compiled functions put such matrices on a support: real ones of many points, with few rows."""
-    few = hub.shape[-1] + matrix.shape[-1] - len(HUB) <= MOST_ROWS
-    return few and matrix.ndim > 2 and not any(map(np.iscomplexobj, (matrix, hub, addition)))
+def _are_served(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) -> bool:
+    """Return whether compiled functions put such matrices on a support: real ones with few rows."""
+    few = hub.shape[-1] + len(rotor.dofs) - len(HUB) <= MOST_ROWS
+    return few and not any(map(np.iscomplexobj, (*rotor.matrices.values(), hub, *additions.values())))
 
 
-def _compiled(matrix: Array, hub: Array, addition: Array) -> Array:
+def _compiled(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) -> dict[str, Array]:
     """Return the same as `_on_support` by compiled functions."""
-    shape = matrix.shape[:-2]
-    of_support = (
+    shape, matrices = rotor.M.shape[:-2], rotor.matrices
+    at_hub, *own = (
         part
         if part.ndim == 2
         else np.broadcast_to(part, (*shape, *part.shape[-2:])).reshape(-1, *part.shape[-2:])
-        for part in (hub, addition)
+        for part in (hub, *additions.values())
     )
-    found = on_support(matrix.reshape(-1, *matrix.shape[-2:]), *of_support)
-    return found.reshape(*shape, *found.shape[-2:])
+    flat = [matrix.reshape(-1, *matrix.shape[-2:]) for matrix in matrices.values()]
+    found = on_support(flat, at_hub, own)
+    return {
+        name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in zip(matrices, found, strict=True)
+    }
 
 
 def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:

@@ -23,6 +23,7 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
 from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import (
     LAGS_PER_BLADE,
@@ -45,8 +46,8 @@ from proprotor.rotor.section_loads import (
     load_moments,
     segment_quantities,
 )
-from proprotor.rotor.trim import Target, Trim, trim_target
-from proprotor.rotor.trim_solver import Settled, solve_trim
+from proprotor.rotor.trim import Target, Trim, take, trim_target
+from proprotor.rotor.trim_solver import Settled, balance_of, solve_trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
@@ -106,18 +107,19 @@ def model_of(
     target = trim_target(rotor, operation)
     if shape:
         target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-    settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
     apart = reactionless_groups(reactionless) if reactionless else []
     lagging: tuple[Coordinate, ...] = ()
     if choice.blades_lag:
         lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
     coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
+    asked = _Asked(sections, few, quantities, choice, target, points)
     if choice.is_tilted:
+        settled = asked.trimmed(one=shape == ())
         made = _about_periodic_trim(_Tilted(rotor, choice, target, speed, shape, around), sections, settled)
     else:
-        found = _matrices(sections, choice, settled, reactionless, len(coordinates), one=shape == ())
-        made = _Made(found, settled.trim, speed, shape)
+        found, trim = asked.in_flight(reactionless, len(coordinates), one=shape == ())
+        made = _Made(found, trim, speed, shape)
     matrices: dict[str, Any] = {
         name: matrix.reshape(*made.shape, *matrix.shape[-2:]) for name, matrix in made.matrices.items()
     }
@@ -139,6 +141,51 @@ def model_of(
         coordinates = (*coordinates, Coordinate(MAST_TWIST, MAST_TWIST, 0, "", "rad"))
     free = _free_coordinates(choice, coordinates)
     return model if free == model.dofs else model.submodel(free)
+
+
+class _Asked(NamedTuple):
+    """Blades whose trim and matrices are asked for, see `solve_trim`."""
+
+    sections: BladeSections
+    few: BladeSections
+    quantities: dict[str, Any]
+    options: Options
+    target: Target
+    points: int
+
+    def trimmed(self, one: bool) -> Settled:
+        """Return the trim of all points; `one` says that there is one point, not an array of one."""
+        return solve_trim(*self, one=one)
+
+    def at(self, rows: Array) -> _Asked:
+        """Return some of the points."""
+        sections, target = self.sections.take(rows), self.target
+        few = sections if self.few is self.sections else self.few.take(rows)
+        own = take({"collective": target.collective, "load": target.load}, rows)
+        return _Asked(
+            sections, few, take(self.quantities, rows), self.options, replace(target, **own), len(rows)
+        )
+
+    def in_flight(self, reactionless: int | None, n: int, one: bool) -> tuple[dict[str, Array], Trim]:
+        """Return M, C, K and B of all points, see `_matrices`, and their trim: in one call as far as this is served."""
+        sections, few, quantities, options, target, points = self
+        balance = balance_of(sections, quantities, options, target, points)
+        if not serves_in_flight(balance, few):
+            settled = self.trimmed(one)
+            return _matrices(sections, options, settled, reactionless, n, one), settled.trim
+        found = find_in_flight(balance)
+        if not options.pitch_is_free:
+            found.matrices["B"] = _without_pitch_equations(found.matrices["K"], found.matrices["B"])
+        if not found.served.all():
+            left = np.flatnonzero(~found.served)
+            own = self.at(left) if points > len(left) else self
+            settled = own.trimmed(one)
+            matrices = _matrices(own.sections, options, settled, reactionless, n, one)
+            for name, matrix in matrices.items():
+                found.matrices[name][left] = matrix
+            for name, values in vars(settled.trim).items():
+                getattr(found.trim, name)[left] = values
+        return found.matrices, found.trim
 
 
 class _Made(NamedTuple):

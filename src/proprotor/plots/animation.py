@@ -1,9 +1,14 @@
-"""Animation of a mode: rotor and wing in motion, as a GIF."""
+"""Animation of a mode: rotor and wing in motion, as a GIF, as a page for a browser or as a film."""
 
 from __future__ import annotations
 
+import html
+import io
 import os
+import tempfile
 import textwrap
+from base64 import b64encode
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,12 +17,12 @@ import numpy as np
 from proprotor.errors import InputError
 from proprotor.files.output import check_place, write_whole
 from proprotor.model import stamp
-from proprotor.model.doubts import MARK, marked
-from proprotor.needs import check_memory
+from proprotor.model.doubts import MARK
+from proprotor.needs import check_memory, need
 from proprotor.plots.mode_motion import ModeMotion
-from proprotor.plots.mode_shape import draw_moving, draw_still
+from proprotor.plots.mode_shape import draw_moving, draw_still, title_of
+from proprotor.plots.style import GREY, LABEL_SIZE, SMALL_SIZE
 from proprotor.typing import Axes
-from proprotor.units import KNOT, KTAS
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -27,7 +32,30 @@ _PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "si
 _TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
 _COLOURS = 32  # colours of the GIF
 _CANVAS = 16  # bytes for a pixel while one picture is drawn: the canvas, its background, the colours
-_LETTERS = 170  # letters in a line of the small print
+_LETTERS = 155  # letters in a line of the small print
+_FILM = 8.0  # seconds that a film takes, to whole cycles
+# A picture of one cycle after the other; the slider halts at one of them.
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<title>{title}</title>
+<style>body {{ font-family: sans-serif; text-align: center }} img, input {{ width: min(100%, {width}px) }}</style>
+<img id="picture" alt="{title}"><br>
+<input id="place" type="range" min="0" max="{last}" value="0" aria-label="picture of the cycle"><br>
+<button id="run">halt</button>
+<script>
+const pictures = [{pictures}];
+const [picture, place, run] = ["picture", "place", "run"].map((id) => document.getElementById(id));
+let runs = true;
+const show = () => {{ picture.src = pictures[place.value]; }};
+const keep = (on) => {{ runs = on; run.textContent = on ? "halt" : "run"; }};
+run.onclick = () => keep(!runs);
+place.oninput = () => {{ keep(false); show(); }};
+setInterval(() => {{ if (runs) {{ place.value = (+place.value + 1) % pictures.length; show(); }} }}, {milliseconds});
+show();
+</script>
+</html>
+"""
 
 
 def animate_mode(
@@ -38,14 +66,16 @@ def animate_mode(
     frames_per_second: float = 12.0,
     dpi: int = 80,
 ) -> Path:
-    """Write one cycle of a mode as a GIF that repeats forever, in perspective, from ahead and from the side.
+    """Write one cycle of a mode, in perspective, from ahead and from the side.
 
     Parameters
     ----------
     motion : ModeMotion
         Result of `proprotor.plots.mode_motion.mode_motion`.
     path : str or path
-        A file that ends in .gif.
+        A file that ends in .gif, .html or .mp4. A GIF and a page repeat the cycle forever, and the reader of a page can
+        halt at each picture; a film shows the cycle for about 8 s, and needs the program ffmpeg, on the search path or
+        from the package imageio-ffmpeg (extra ``film``).
     frames : int
         Number of pictures of one cycle, at least 4.
     frames_per_second : float
@@ -61,61 +91,113 @@ def animate_mode(
     Raises
     ------
     InputError
-        For another ending, a file that cannot be written, numbers that make no animation, or pictures that do not fit
-        into memory.
+        For another ending, a file that cannot be written, numbers that make no animation, pictures that do not fit into
+        memory, and a film without ffmpeg.
     """
-    check_place(path, ".gif")
+    ending = Path(path).suffix.lower()
+    if ending not in _WRITERS:
+        raise InputError("path", str(path), f"must end in {', '.join(_WRITERS)}")
+    check_place(path, ending)
     if frames < 4 or not frames_per_second > 0 or not dpi > 0:
         given = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
         raise InputError("frames", given, "must be at least 4, at a speed and a size above zero")
+    if ending == ".mp4":
+        _ffmpeg()  # refuses a film without it
     picture = _SIZE[0] * _SIZE[1] * float(dpi) ** 2  # pixels
-    check_memory("frames", frames, picture * (frames + _CANVAS), "the pictures", "take fewer or smaller ones")
-    first, *others = _frames(motion, frames, dpi)
-    milliseconds = round(1000 / frames_per_second)
-    how: dict[str, Any] = {"append_images": others, "duration": milliseconds, "loop": 0, "optimize": True}
-    write_whole(path, lambda file: first.save(file, format="GIF", save_all=True, **how))
+    each = 1 if ending == ".gif" else 3  # bytes for a pixel that is kept
+    check_memory(
+        "frames", frames, picture * (each * frames + _CANVAS), "the pictures", "take fewer or smaller ones"
+    )
+    content = _WRITERS[ending](motion, _frames(motion, frames, dpi), frames_per_second)
+    write_whole(path, lambda file: file.write(content))
     return Path(path)
 
 
-def title_of(motion: ModeMotion) -> str:
-    """Return the title of a mode: its name, airspeed, frequency and damping.
+def _gif(_: ModeMotion, frames: Iterator[Image], frames_per_second: float) -> bytes:
+    from PIL import Image  # here, because PIL takes long to import
 
-    Parameters
-    ----------
-    motion : ModeMotion
+    pictures: list[Image.Image] = []
+    palette: Image.Image | None = None
+    for whole in frames:
+        palette = palette or whole.quantize(_COLOURS)  # one for all pictures, so that shades do not flicker
+        pictures.append(whole.quantize(palette=palette, dither=Image.Dither.NONE))
+    first, *others = pictures
+    how: dict[str, Any] = {"append_images": others, "duration": round(1000 / frames_per_second), "loop": 0}
+    file = io.BytesIO()
+    first.save(file, format="GIF", save_all=True, optimize=True, **how)
+    return file.getvalue()
 
-    Returns
-    -------
-    str
-    """
-    value = motion.eigenvalue
-    per_rev = f", {value.imag / motion.rotor_speed:.2f}/rev" if motion.rotor_speed else ""
-    damping = -100 * value.real / abs(value)
-    hertz = value.imag / (2 * np.pi)
-    return (
-        f"{motion.mode} at {marked(f'{motion.airspeed / KNOT:.0f}', motion.warning)} {KTAS}: {hertz:.2f} Hz{per_rev}, "
-        f"damping {damping:.2f} % of critical"
+
+def _page(motion: ModeMotion, frames: Iterator[Image], frames_per_second: float) -> bytes:
+    """Return a page that needs nothing but a browser: all pictures are within, with a button and a slider."""
+    pictures = []
+    for frame in frames:
+        width = frame.width
+        file = io.BytesIO()
+        frame.quantize(_COLOURS).save(file, format="PNG", optimize=True)
+        pictures.append(f'"data:image/png;base64,{b64encode(file.getvalue()).decode()}"')
+    page = _PAGE.format(
+        title=html.escape(f"{motion.case}: {title_of(motion)}"),
+        width=width,
+        last=len(pictures) - 1,
+        pictures=",\n".join(pictures),
+        milliseconds=round(1000 / frames_per_second),
     )
+    return page.encode()
 
 
-def _frames(motion: ModeMotion, count: int, dpi: int) -> list[Image]:
-    """Return the pictures of one cycle. The trim state is drawn once, and the moving lines over copies of the state."""
+def _film(_: ModeMotion, frames: Iterator[Image], frames_per_second: float) -> bytes:
+    """Return a film in H.264, which every player knows; whole cycles, as many as the shortest film takes."""
+    import matplotlib
+    from matplotlib.animation import FFMpegWriter
+    from matplotlib.figure import Figure
+
+    pictures = [np.asarray(frame) for frame in frames]
+    height, width, _colours = pictures[0].shape
+    figure = Figure(figsize=(width / 100, height / 100), dpi=100)
+    shown = figure.figimage(pictures[0])
+    cycles = max(1, round(_FILM * frames_per_second / len(pictures)))
+    with matplotlib.rc_context({"animation.ffmpeg_path": _ffmpeg()}), tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "mode.mp4"
+        rate: Any = frames_per_second  # typed as a whole number; ffmpeg takes any
+        writer = FFMpegWriter(fps=rate, codec="h264")
+        with writer.saving(figure, str(file), 100):
+            for picture in pictures * cycles:
+                shown.set_data(picture)
+                writer.grab_frame()
+        return file.read_bytes()
+
+
+def _ffmpeg() -> str:
+    """Return the program ffmpeg: that of Matplotlib's settings, or that of the package imageio-ffmpeg."""
+    import matplotlib
+    from matplotlib.animation import FFMpegWriter
+
+    if FFMpegWriter.isAvailable():
+        return str(matplotlib.rcParams["animation.ffmpeg_path"])
+    need("imageio_ffmpeg", "path", "films, or the program ffmpeg", "film")
+    import imageio_ffmpeg
+
+    return str(imageio_ffmpeg.get_ffmpeg_exe())
+
+
+_Writer = Callable[[ModeMotion, Iterator["Image"], float], bytes]
+_WRITERS: dict[str, _Writer] = {".gif": _gif, ".html": _page, ".mp4": _film}
+
+
+def _frames(motion: ModeMotion, count: int, dpi: int) -> Iterator[Image]:
+    """Yield the pictures of one cycle. The trim state is drawn once, and the moving lines over copies of the state."""
     from PIL import Image  # here, because PIL takes long to import
 
     canvas, axes = _still(motion, dpi)
     background = canvas.copy_from_bbox(canvas.figure.bbox)
-    pictures: list[Image.Image] = []
-    palette: Image.Image | None = None
     for phase in 2 * np.pi * np.arange(count) / count:
         canvas.restore_region(background)
         for view, ax in axes.items():
             for line in draw_moving(ax, motion, view, float(phase)):
                 ax.draw_artist(line)
                 line.remove()
-        whole = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
-        palette = palette or whole.quantize(_COLOURS)  # one for all pictures, so that shades do not flicker
-        pictures.append(whole.quantize(palette=palette, dither=Image.Dither.NONE))
-    return pictures
+        yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
 
 def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
@@ -133,9 +215,13 @@ def _still(motion: ModeMotion, dpi: int) -> tuple[Any, dict[str, Axes]]:
         axes[view] = ax = figure.add_axes(place, projection="3d" if view == "3d" else None)
         draw_still(ax, motion, view)
         ax.set_axis_off()
-        ax.set_title(_TITLES[view], fontsize=8, color="0.3")
-    figure.text(0.02, 0.975, f"{motion.case}\n{title_of(motion)}", fontsize=9, va="top", parse_math=False)
-    figure.text(0.02, 0.02, _small_print(motion), fontsize=6.5, color="0.35", va="bottom", parse_math=False)
+        ax.set_title(_TITLES[view], fontsize=LABEL_SIZE, color="0.3")
+    figure.text(
+        0.02, 0.975, f"{motion.case}\n{title_of(motion)}", fontsize=LABEL_SIZE + 1, va="top", parse_math=False
+    )
+    figure.text(
+        0.02, 0.02, _small_print(motion), fontsize=SMALL_SIZE, color=GREY, va="bottom", parse_math=False
+    )
     canvas.draw()
     return canvas, axes
 

@@ -10,12 +10,13 @@ from proprotor.errors import check_known
 from proprotor.model.doubts import marked
 from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
 from proprotor.plots.canvas import axes_or_new, note, say_origin
-from proprotor.plots.style import DAMPS, DRIVES
+from proprotor.plots.style import DAMPS, DRIVES, in_style
 from proprotor.stability.sensitivity import damping_rate
 from proprotor.typing import Axes, Dataset
 from proprotor.units import KNOT, KTAS
 
 
+@in_style
 def plot_attribution(
     found: Dataset,
     mode: str | None = None,
@@ -85,4 +86,4 @@ def _draw(ax: Axes, bars: list[tuple[str, float]]) -> None:
     centre_on_zero(ax, 1.2 * max(np.abs(values).max(initial=0), 1e-12))
     name_bars(ax, [name for name, _ in bars])
     ax.set_ylim(-0.6, len(bars) - 0.4)
-    ax.legend(fontsize=7, loc="lower right", framealpha=0.95)
+    ax.legend(loc="lower right")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from proprotor.plots.canvas import grid
-from proprotor.plots.style import LABEL_SIZE
+from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE
 from proprotor.typing import Axes
 
 
@@ -28,7 +28,12 @@ def centre_on_zero(ax: Axes, reach: float) -> None:
 def write_beside(ax: Axes, place: int, end: float, text: str) -> None:
     """Write a text beside the end of the bar at a place, on the far side from zero."""
     side, offset = ("left", 3) if end >= 0 else ("right", -3)
-    style: dict[str, Any] = {"fontsize": 7, "va": "center", "ha": side, "textcoords": "offset points"}
+    style: dict[str, Any] = {
+        "fontsize": SMALL_SIZE,
+        "va": "center",
+        "ha": side,
+        "textcoords": "offset points",
+    }
     ax.annotate(text, (end, place), xytext=(offset, 0), **style)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from proprotor.model.blade_comparison import hinged_frequencies, in_vacuum
 from proprotor.plots.canvas import grid
-from proprotor.plots.style import LABEL_SIZE
+from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, in_style
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.elastic_blade import ElasticBlade
 from proprotor.rotor.hinged_blade import HingedBlade
@@ -23,6 +23,7 @@ _ELASTIC: dict[str, Any] = {"color": "0.2", "linewidth": 1.4}
 _HINGED: dict[str, Any] = {"color": "#c1440e", "linestyle": "--", "linewidth": 1.6}
 
 
+@in_style
 def plot_blade_frequencies(
     stations: BladeStations, found: HingedBlade, rotor_speeds: Sequence[float]
 ) -> Figure:
@@ -60,13 +61,13 @@ def plot_blade_frequencies(
         hinged = turning[column] / (2 * np.pi)
         _draw(below, speeds / _RPM, fan, hinged)
         _draw_harmonics(below, speeds)
-        above.set_title(("All blades alike", "Cyclic, on a free gimbal")[column], fontsize=10)
+        above.set_title(("All blades alike", "Cyclic, on a free gimbal")[column], fontsize=LABEL_SIZE + 1)
         above.set_xlabel("Collective at 0.75 R (deg)")
         below.set_xlabel("Rotor speed (rpm)")
         below.axvline(speed / _RPM, color="0.6", linewidth=0.8, linestyle="-.")
     axes[0, 0].set_ylabel("Frequency (per rev)")
     axes[1, 0].set_ylabel("Frequency (Hz)")
-    axes[0, 0].legend(fontsize=LABEL_SIZE)
+    axes[0, 0].legend()
     axes[0, 0].set_ylim(0, 1.05 * float(elastic.max()))
     axes[1, 0].set_ylim(0, 1.05 * float(fan.max()))
     return figure
@@ -88,7 +89,7 @@ def _draw_harmonics(ax: Axes, speeds: Array) -> None:
         ax.annotate(
             f"{n}/rev",
             (speeds[-1] / _RPM, n * speeds[-1] / (2 * np.pi)),
-            fontsize=7,
+            fontsize=SMALL_SIZE,
             color="0.5",
             ha="right",
             annotation_clip=True,

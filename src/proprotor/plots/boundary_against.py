@@ -13,7 +13,7 @@ from proprotor.plots.canvas import axes_or_new, grid, note, points_per_pixel, sa
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, axis_of, written
 from proprotor.plots.points import draw_points
-from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE
+from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE, in_style
 from proprotor.tables.boundary_table import FIRST, input_of
 from proprotor.tables.points import Points, Quantity
 from proprotor.typing import Array, Axes, Dataset, Line2D
@@ -26,6 +26,7 @@ _MARGIN = 0.015  # of the axis, left and right of what is drawn
 _LETTER = 0.55  # mean width of a letter, of its size
 
 
+@in_style
 def plot_boundary_against(
     found: Dataset,
     ax: Axes | None = None,
@@ -143,7 +144,7 @@ def _name(ax: Axes, lines: list[Line2D], found: Dataset, line: Positions) -> Non
             at_edge.append(drawn)
         else:
             _write(ax, drawn, int(known[-1]), str(drawn.get_label()))
-    label_lines(ax, at_edge, "at some points or all")
+    label_lines(ax, at_edge, "airspeed")
 
 
 def _write(ax: Axes, drawn: Line2D, place: int, text: str) -> None:

@@ -13,15 +13,18 @@ from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import positions
 from proprotor.plots.mode_lines import draw_modes
 from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
-from proprotor.plots.style import LABEL_SIZE, white_box
+from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, in_style, white_box
 from proprotor.tables.points import Points
 from proprotor.tables.sweep_summary import damped_frequency
 from proprotor.typing import Axes, Dataset
 
 _ROTOR_SPEED = "operation.rotor_speed"
 _HARMONICS = 5
+_ALONG = (0.955, 0.87, 0.78)  # of a ray: places for its name
+_WIDTH = 0.06  # of the axes: of a name and half a mark of a rotor speed
 
 
+@in_style
 def plot_campbell(
     sweep: Dataset,
     ax: Axes | None = None,
@@ -51,8 +54,8 @@ def plot_campbell(
     unit : str
         Unit of the axis of rotor speed.
     limits : (float, float), optional
-        Ends of the frequency axis, Hz; up to the highest ray by default. A note above the axes names the modes that
-        leave the axis.
+        Ends of the frequency axis, Hz; up to the highest ray by default. A note beneath the axes names the modes of
+        which no point lies within.
     points : Points, optional
         Of `proprotor.tables.points.read_points`: columns rotor_speed and frequency.
 
@@ -76,9 +79,9 @@ def plot_campbell(
     ax.set_xlim(0, float(line.values.max()))
     ax.set_ylim(*(limits or (0, max(rays) * float(omega.max()) / (2 * np.pi))))
     draw_points(ax, points, quantity_of(line, "rad/s"), frequency_quantity(line, None))
-    _draw_rays(ax, rays, line.factor / (2 * np.pi), n_blades)
-    if rotor_speed is not None:
-        at = rotor_speed / line.factor
+    at = None if rotor_speed is None else rotor_speed / line.factor
+    _draw_rays(ax, rays, line.factor / (2 * np.pi), n_blades, at)
+    if at is not None:
         ax.axvline(at, color="0.35", linewidth=1.0, linestyle="-.", zorder=1)
         style: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": "0.25", "rotation": 90}
         style |= {"ha": "right", "va": "top", "zorder": 4, "textcoords": "offset points", "xytext": (-3, 0)}
@@ -86,19 +89,30 @@ def plot_campbell(
             f"{at:.0f} {unit}", (at, 0.98), xycoords=ax.get_xaxis_transform(), bbox=white_box(1), **style
         )
     ax.set_ylabel("Frequency |Im s| in the fixed frame (Hz)")
-    label_lines(ax, lines, "at some rotor speeds or all")
+    label_lines(ax, lines, "frequency")
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 
-def _draw_rays(ax: Axes, harmonics: Sequence[int], hertz: float, n_blades: int | None) -> None:
-    """Draw the lines of n times the rotor speed, with n near the end of each; `hertz` is one unit of rotor speed."""
+def _draw_rays(
+    ax: Axes, harmonics: Sequence[int], hertz: float, n_blades: int | None, kept_free: float | None
+) -> None:
+    """Draw the lines of n times the rotor speed, with n near the end of each, away from a rotor speed to keep free.
+
+    `hertz` is one unit of rotor speed.
+    """
     right, top = ax.get_xlim()[1], ax.get_ylim()[1]
     for n in harmonics:
         strong = n_blades is not None and n % n_blades == 0
         end = min(right, top / (n * hertz))
         style: dict[str, Any] = {"color": "0.1" if strong else "0.55", "zorder": 1}
         ax.plot([0, end], [0, n * hertz * end], linewidth=1.1 if strong else 0.7, dashes=(2, 2), **style)
-        near = 0.955 * end
-        style |= {"fontsize": 7, "ha": "center", "va": "center"}
+        near = _free_place([share * end for share in _ALONG], kept_free, _WIDTH * right)
+        style |= {"fontsize": SMALL_SIZE, "ha": "center", "va": "center"}
         ax.text(near, n * hertz * near, f"{n}/rev", bbox=white_box(0.8), **style)
+
+
+def _free_place(places: Sequence[float], kept_free: float | None, width: float) -> float:
+    """Return the first of some rotor speeds that is farther than a width from the one to keep free, or the last."""
+    free = (place for place in places if kept_free is None or abs(place - kept_free) > width)
+    return next(free, places[-1])

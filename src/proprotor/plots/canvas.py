@@ -1,28 +1,21 @@
-"""The axes of a plot, and the notes around them: lines that are not drawn above, the origin of the numbers beneath."""
+"""The axes of a plot, and what is told beneath them: lines that are not drawn, the origin of the numbers, doubts."""
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from proprotor.case import Case
-from proprotor.errors import printable
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, doubts_along, footnotes
 from proprotor.model.provenance import reservations
+from proprotor.plots import small_print
 from proprotor.plots.line_of_sweep import Positions, written
-from proprotor.plots.style import GREY, LABEL_SIZE
+from proprotor.plots.style import LABEL_SIZE, TITLE_SIZE
 from proprotor.typing import Axes, Dataset, Figure
 
 Limits = tuple[float, float]  # ends of an axis
-RIGHT = 0.75  # right edge of the axes as a share of the width, if labels stand beside the axes
-_NOTE_SIZE = 7  # points
-_INCHES = _NOTE_SIZE * 1.25 / 72  # between lines of the note
-_LETTERS_PER_INCH = 16.0
-_SMALL_SIZE = 5.5  # points
-_BELOW = 36.0  # points: from the axes down to the small print, past the label of the axes
-_SMALL_LETTERS_PER_INCH = 26.0
+_RIGHT = 0.75  # right edge of the axes as a share of the width, if labels stand beside the axes
 
 
 def axes_or_new(ax: Axes | None, *, size: tuple[float, float] = (8, 5), labels_beside: bool = False) -> Axes:
@@ -34,11 +27,34 @@ def axes_or_new(ax: Axes | None, *, size: tuple[float, float] = (8, 5), labels_b
         return ax
     import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
 
-    if not labels_beside:
-        return plt.subplots(figsize=size, layout="constrained")[1]
-    figure, ax = plt.subplots(figsize=size)
-    figure.subplots_adjust(left=0.09, right=RIGHT, bottom=0.7 / size[1], top=1 - 0.6 / size[1])
+    figure, ax = plt.subplots(figsize=size, layout=None if labels_beside else "constrained")
+    if labels_beside:
+        figure.subplots_adjust(left=0.09, right=_RIGHT, bottom=0.55 / size[1], top=1 - 0.4 / size[1])
+    small_print.own(figure)
     return ax
+
+
+def two_axes(size: tuple[float, float]) -> tuple[Figure, tuple[Axes, Axes]]:
+    """Return a new figure, its size in inches, with two axes above each other that leave room for labels beside."""
+    import matplotlib.pyplot as plt
+
+    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=size)
+    figure.subplots_adjust(left=0.09, right=_RIGHT, top=1 - 0.2 / size[1], bottom=0.5 / size[1], hspace=0.1)
+    small_print.own(figure)
+    return figure, (above, below)
+
+
+def write_title(figure: Figure, title: str, second: str = "") -> None:
+    """Write a title above the axes of a figure of `two_axes`, and a second line in smaller letters."""
+    height = figure.get_size_inches()[1]
+    room = 0.2 + (0.22 if title else 0) + (0.2 if second else 0)  # inches
+    figure.subplots_adjust(top=1 - room / height)
+    left: dict[str, Any] = {"x": 0.09, "ha": "left", "va": "top", "parse_math": False}
+    if title:
+        figure.suptitle(title, y=1 - 0.1 / height, fontsize=TITLE_SIZE, **left)
+    if second:
+        y = 1 - (0.34 if title else 0.1) / height
+        figure.text(left.pop("x"), y, second, fontsize=LABEL_SIZE + 1, fontweight="bold", **left)
 
 
 def grid(ax: Axes) -> None:
@@ -54,27 +70,18 @@ def points_per_pixel(ax: Axes) -> float:
 
 
 def note(ax: Axes, text: str) -> None:
-    """Add a note in small print above the axes, on the left, below earlier notes."""
-    notes = "\n".join(filter(None, (ax.get_title(loc="left"), textwrap.fill(text, 110))))
-    ax.set_title(notes, loc="left", fontsize=LABEL_SIZE, color="0.3", parse_math=False)
+    """Add a sentence on the drawing to the small print beneath the axes."""
+    small_print.add(ax, f"{text[:1].upper()}{text[1:].removesuffix('.')}.")
 
 
-def origin_of(attributes: Mapping[Any, Any], doubts: Iterable[str]) -> str:
+def _origin_of(attributes: Mapping[Any, Any], doubts: Iterable[str]) -> str:
     """Return the case of the numbers, its options, and a sentence for each doubt about the numbers."""
     return " ".join((stamp.line(attributes), *(f"{MARK} {doubt}" for doubt in doubts))).strip()
 
 
 def say_origin(ax: Axes, attributes: Mapping[Any, Any], doubts: Iterable[str] = ()) -> None:
-    """Write `origin_of` the numbers in small print beneath the axes."""
-    text = origin_of(attributes, doubts)
-    figure = ax.get_figure(root=True)
-    if not text or figure is None:
-        return
-    inches = ax.get_position().width * figure.get_size_inches()[0]
-    lines = textwrap.wrap(printable(text), max(40, int(_SMALL_LETTERS_PER_INCH * inches)))
-    style: dict[str, Any] = {"fontsize": _SMALL_SIZE, "color": "0.5", "va": "top", "parse_math": False}
-    place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points"}
-    ax.annotate("\n".join(lines), (0, 0), xytext=(0, -_BELOW), annotation_clip=False, **place, **style)
+    """Write the case, the options and the doubts of the numbers in small print beneath the axes."""
+    small_print.add(ax, _origin_of(attributes, doubts))
 
 
 def along(results: Dataset, line: Positions) -> Iterator[str]:
@@ -85,7 +92,7 @@ def along(results: Dataset, line: Positions) -> Iterator[str]:
 
 
 def rests_on(ax: Axes, case: Case, *more: str) -> Axes:
-    """Write beneath a figure how far the numbers of a case can be trusted: doubtful inputs and calibration.
+    """Write beneath a plot how far the numbers of a case can be trusted: doubtful inputs and calibration.
 
     Parameters
     ----------
@@ -101,24 +108,8 @@ def rests_on(ax: Axes, case: Case, *more: str) -> Axes:
     matplotlib.axes.Axes
         The given axes.
     """
-    add_footer(ax.get_figure(root=True), " ".join((*more, *reservations(case))))
+    if (figure := ax.get_figure(root=True)) is not None:
+        small_print.own(figure)
+    small_print.add(ax, *more, first=True)
+    small_print.add(ax, *reservations(case))
     return ax
-
-
-def add_footer(figure: Figure | None, text: str) -> None:
-    """Add a note at the bottom of a figure, which grows by the lines of the note."""
-    if figure is None or not text:
-        return
-    width, height = figure.get_size_inches()
-    lines = textwrap.wrap(text, max(20, int(_LETTERS_PER_INCH * (width - 0.4))))
-    share = ((len(lines) + 1) * _INCHES) / (height + (len(lines) + 1) * _INCHES)
-    figure.set_size_inches(width, height / (1 - share))
-    engine: Any = figure.get_layout_engine()
-    if engine is None:
-        kept = figure.subplotpars
-        bottom, top = (share + (1 - share) * part for part in (kept.bottom, kept.top))
-        figure.subplots_adjust(bottom=bottom, top=top)
-    else:
-        engine.set(rect=(0, share, 1, 1 - share))
-    style: dict[str, Any] = {"fontsize": _NOTE_SIZE, "va": "bottom", "color": GREY, "parse_math": False}
-    figure.text(0.2 / width, 0.5 * _INCHES * (1 - share) / height, "\n".join(lines), **style)

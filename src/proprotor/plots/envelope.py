@@ -10,7 +10,7 @@ import numpy as np
 from proprotor.errors import InputError
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
-from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE
+from proprotor.plots.style import COLOURS, GREY, in_style
 from proprotor.typing import Array, Axes, Dataset
 from proprotor.units import KEAS, KNOT, factor_to_si
 
@@ -20,6 +20,7 @@ _INSIDE = "0.92"  # grey of the speeds at which normal conditions must be free o
 _ROOM = 0.08  # of the range of speeds, beyond the last
 
 
+@in_style
 def plot_envelope(found: Dataset, ax: Axes | None = None, *, unit: str = "ft") -> Axes:
     """Draw where each condition of an envelope becomes unstable, and the speeds that it must reach.
 
@@ -81,7 +82,7 @@ def plot_envelope(found: Dataset, ax: Axes | None = None, *, unit: str = "ft") -
     grid(ax)
     if none:
         note(ax, f"No onset in the search: {'; '.join(none)}")
-    ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=LABEL_SIZE, frameon=False)
+    ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
     doubts = reasons_for_doubt(found.warning.values.ravel().tolist())
     say_origin(ax, found.attrs, [f"Doubtful where markers are hollow: {text}." for text in doubts])
     return ax

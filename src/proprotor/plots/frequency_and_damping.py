@@ -8,19 +8,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from proprotor.model.stamp import density_of
-from proprotor.plots.canvas import RIGHT, Limits, add_footer, along, axes_or_new, origin_of, say_origin
+from proprotor.plots import small_print
+from proprotor.plots.canvas import Limits, along, axes_or_new, note, say_origin, two_axes, write_title
 from proprotor.plots.end_labels import label_lines
-from proprotor.plots.line_of_sweep import Positions, positions
-from proprotor.plots.mode_lines import draw_modes
+from proprotor.plots.line_of_sweep import Positions, positions, written
+from proprotor.plots.mode_lines import draw_modes, name_of_last
+from proprotor.plots.onsets import boundaries_of
 from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
-from proprotor.plots.style import LABEL_SIZE, UNSTABLE
+from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, UNSTABLE, in_style, white_box
 from proprotor.tables.points import DAMPING, Points, Quantity
-from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps, unstable_ranges
+from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps
 from proprotor.typing import Array, Axes, Dataset, Figure
 
-_TITLE, _NOTE = 0.42, 0.16  # inches above the axes: for a title, and for each line of a note
+_DAMPING = (-5.0, 20.0)  # usual ends of the axis of damping, percent of critical
+_PERCENT = Quantity(DAMPING, "", 0.01)
+_ONSET = "onset"  # gid of the name of a mode beside its boundary
+_ROWS = 6  # of names of modes below the line of zero damping
+_NEAR = 0.25  # of the width of the axes: so near the left edge a name stands to the right
 
 
+@in_style
 def plot_frequency(
     sweep: Dataset,
     ax: Axes | None = None,
@@ -29,8 +36,9 @@ def plot_frequency(
     unit: str | None = None,
     limits: tuple[float, float] | None = None,
     points: Points | None = None,
+    name: str = "",
 ) -> Axes:
-    """Draw the frequency |Im s| of each mode along a sweep.
+    """Draw the frequency |Im s| of each mode along a sweep, with a circle where a mode becomes unstable.
 
     Parameters
     ----------
@@ -43,10 +51,12 @@ def plot_frequency(
     unit : str, optional
         Unit of the axis of airspeed, "ktas" by default, or of the input.
     limits : (float, float), optional
-        Ends of the frequency axis, in its unit; 0 to 5 per revolution by default. A note above the axes names the modes
-        that leave the axis.
+        Ends of the frequency axis, in its unit; 0 to 5 per revolution by default. A note beneath the axes names the
+        modes of which no point lies within.
     points : Points, optional
         Of `proprotor.tables.points.read_points`, drawn beside the lines: columns airspeed, or the input, and frequency.
+    name : str
+        What the labels call this sweep, if the axes hold several; by default the case or the options, if these differ.
 
     Returns
     -------
@@ -60,44 +70,35 @@ def plot_frequency(
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
-    _draw_frequency(ax, sweep, line, rotor_speed, limits, points)
+    _draw_frequency(ax, sweep, line, _Asked(rotor_speed, limits, points, name))
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 
-def _draw_frequency(
-    ax: Axes,
-    sweep: Dataset,
-    line: Positions,
-    rotor_speed: ArrayLike | None,
-    limits: Limits | None = None,
-    points: Points | None = None,
-    needed: bool = True,
-) -> None:
-    measured = _Measured(points, frequency_quantity(line, rotor_speed), needed)
-    per = 2 * np.pi if rotor_speed is None else np.asarray(rotor_speed)[..., None]
-    _draw(
-        ax,
-        sweep,
-        damped_frequency(sweep) / per,
-        line,
-        limits or (0, None if rotor_speed is None else 5),
-        measured,
-    )
-    ax.set_ylabel(f"Frequency |Im s| ({'Hz' if rotor_speed is None else 'per rev'})")
+def _draw_frequency(ax: Axes, sweep: Dataset, line: Positions, of: _Asked) -> None:
+    per = 2 * np.pi if of.rotor_speed is None else np.asarray(of.rotor_speed)[..., None]
+    values = damped_frequency(sweep) / per
+    limits = of.limits or (0, None if of.rotor_speed is None else 5)
+    _draw(ax, sweep, values, line, limits, of, frequency_quantity(line, of.rotor_speed), "frequency")
+    onsets = [one for one in boundaries_of(sweep, values) if one.onset]
+    _draw_circles(ax, [one.place / line.factor for one in onsets], [one.value for one in onsets])
+    ax.set_ylabel(f"Frequency |Im s| ({'Hz' if of.rotor_speed is None else 'per rev'})")
 
 
+@in_style
 def plot_damping(
     sweep: Dataset,
     ax: Axes | None = None,
     *,
     unit: str | None = None,
-    limits: tuple[float, float] = (-5, 20),
+    limits: tuple[float, float] = _DAMPING,
     points: Points | None = None,
+    name: str = "",
 ) -> Axes:
     """Draw the damping ratio -Re s/|s| of each mode along a sweep, in percent of critical.
 
-    Damping is negative where a mode is unstable.
+    Damping is negative where a mode is unstable. Circles are boundaries, interpolated between points of the sweep; of
+    those where a mode becomes unstable the mode and the airspeed are written.
 
     Parameters
     ----------
@@ -108,9 +109,11 @@ def plot_damping(
     unit : str, optional
         Unit of the axis of airspeed, "ktas" by default, or of the input.
     limits : (float, float)
-        Ends of the damping axis, in percent. A note above the axes names the modes that leave the axis.
+        Ends of the damping axis, in percent. A note beneath the axes names the modes of which no point lies within.
     points : Points, optional
         Of `proprotor.tables.points.read_points`, drawn beside the lines: columns airspeed, or the input, and damping.
+    name : str
+        What the labels call this sweep, if the axes hold several; by default the case or the options, if these differ.
 
     Returns
     -------
@@ -124,31 +127,25 @@ def plot_damping(
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
-    _draw_damping(ax, sweep, line, limits, points)
+    _draw_damping(ax, sweep, line, _Asked(None, limits, points, name))
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
 
-def _draw_damping(
-    ax: Axes,
-    sweep: Dataset,
-    line: Positions,
-    limits: Limits,
-    points: Points | None = None,
-    needed: bool = True,
-) -> None:
-    measured = _Measured(points, Quantity(DAMPING, "", 0.01), needed)
-    _draw(ax, sweep, damping_percent(sweep), line, limits, measured)
+def _draw_damping(ax: Axes, sweep: Dataset, line: Positions, of: _Asked) -> None:
+    limits = of.limits or _DAMPING
+    _draw(ax, sweep, damping_percent(sweep), line, limits, of, _PERCENT, "damping")
     _mark_instability(ax, sweep, line)
     ax.set_ylabel("Damping −Re s/|s| (% of critical)")
 
 
+@in_style
 def plot_sweep(
     sweep: Dataset,
     *,
     rotor_speed: ArrayLike | None = None,
     unit: str | None = None,
-    damping_limits: tuple[float, float] = (-5, 20),
+    damping_limits: tuple[float, float] = _DAMPING,
     title: str = "",
     footer: str = "",
     points: Points | None = None,
@@ -174,35 +171,33 @@ def plot_sweep(
     -------
     matplotlib.figure.Figure
     """
-    import matplotlib.pyplot as plt
-
-    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 9))
-    figure.subplots_adjust(left=0.09, right=RIGHT, top=0.94, bottom=0.06, hspace=0.14)
+    figure, (above, below) = two_axes((8, 9))
     line = positions(sweep, unit)
-    broad = "Broad lines: modes of the support, and modes that become unstable."
-    broken = "Where a line is broken its motion passes to another root." if leaps(sweep).any() else ""
-    origin = origin_of(sweep.attrs, along(sweep, line))
-    add_footer(figure, " ".join(filter(None, (broad, broken, footer, origin))))
     if points is not None:
-        points.check(
-            _across(sweep, line), [frequency_quantity(line, rotor_speed), Quantity(DAMPING, "", 0.01)]
-        )
-    _draw_frequency(above, sweep, line, rotor_speed, None, points, needed=False)
-    _draw_damping(below, sweep, line, damping_limits, points, needed=False)
+        points.check(_across(sweep, line), [frequency_quantity(line, rotor_speed), _PERCENT])
+    write_title(figure, title, _first_onset(sweep, line, rotor_speed))
+    _draw_frequency(above, sweep, line, _Asked(rotor_speed, None, points, needed=False))
+    _draw_damping(below, sweep, line, _Asked(None, damping_limits, points, needed=False))
     above.set_xlabel("")
-    height, notes = figure.get_size_inches()[1], above.get_title(loc="left")
-    lines = notes.count("\n") + 1 if notes else 0
-    figure.subplots_adjust(top=min(figure.subplotpars.top, 1 - (_TITLE + _NOTE * lines) / height))
-    figure.suptitle(title, x=0.09, y=1 - 0.15 / height, ha="left", va="top", fontsize=11, parse_math=False)
+    onsets = [one.place for one in boundaries_of(sweep, damping_percent(sweep)) if one.onset]
+    for ax in (above, below) if onsets else ():
+        ax.axvline(min(onsets) / line.factor, color="0.35", linewidth=0.9, linestyle=":", zorder=1)
+    note(below, "Broad lines: modes of the support, and modes that become unstable")
+    if leaps(sweep).any():
+        note(below, "Where a line is broken its motion passes to another root")
+    small_print.add(below, footer)
+    say_origin(below, sweep.attrs, along(sweep, line))
     return figure
 
 
-class _Measured(NamedTuple):
-    """Points of a file, the quantity of the axis up, and whether points without a column of it are refused."""
+class _Asked(NamedTuple):
+    """What a user asked of one plot; `needed`: points without a column of its quantity are refused."""
 
-    points: Points | None
-    up: Quantity
-    needed: bool
+    rotor_speed: ArrayLike | None
+    limits: Limits | None = None
+    points: Points | None = None
+    name: str = ""
+    needed: bool = True
 
 
 def _across(sweep: Dataset, line: Positions) -> Quantity:
@@ -216,27 +211,60 @@ def _draw(
     values: Array,
     line: Positions,
     limits: tuple[float, float | None],
-    measured: _Measured,
+    of: _Asked,
+    up: Quantity,
+    quantity: str,
 ) -> None:
     """Draw values (points, modes) of the modes within limits, points of a file, and the names of the lines."""
-    lines = draw_modes(ax, sweep, values, line)
+    lines = draw_modes(ax, sweep, values, line, of.name)
     ax.margins(x=0)
     ax.set_ylim(*limits)
-    draw_points(ax, measured.points, _across(sweep, line), measured.up, needed=measured.needed)
-    label_lines(ax, lines, f"at some {'airspeeds' if line.name == 'airspeed' else 'points'} or all")
+    draw_points(ax, of.points, _across(sweep, line), up, needed=of.needed)
+    label_lines(ax, lines, quantity)
+
+
+def _first_onset(sweep: Dataset, line: Positions, rotor_speed: ArrayLike | None) -> str:
+    """Return which mode becomes unstable first along the line, where and at which frequency; empty without any."""
+    onsets = [one for one in boundaries_of(sweep, damped_frequency(sweep)) if one.onset]
+    if not onsets:
+        return ""
+    first = min(onsets, key=lambda one: one.place)
+    omega = None if rotor_speed is None else np.asarray(rotor_speed, dtype=float)
+    turns = f", {first.value / omega:.2f} per rev" if omega is not None and omega.ndim == 0 else ""
+    at = f"{_rounded(first.place / line.factor)} {written(line.unit)}"
+    return f"{first.mode} becomes unstable at {at}: {first.value / (2 * np.pi):.2f} Hz{turns}"
 
 
 def _mark_instability(ax: Axes, sweep: Dataset, line: Positions) -> None:
-    """Shade negative damping, and draw a circle at each point where a mode becomes unstable or stable again."""
+    """Shade negative damping, draw a circle at each boundary, and name the modes that become unstable there."""
     ax.axhspan(min(ax.get_ylim()[0], 0), 0, color=UNSTABLE, linewidth=0, zorder=0.5)
     ax.axhline(0, color="black", linewidth=0.8)
-    places: list[float] = []
-    if line.name != "airspeed":  # `unstable_ranges` reads the line of a sweep under this name
-        sweep = sweep.drop_vars("airspeed").rename({line.name: "airspeed"})
-    for found in unstable_ranges(sweep):
-        places += [] if found.open_start else [found.start]
-        places += [] if found.open_stop else [found.stop]
-    style: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": "black", "zorder": 3}
-    ax.plot(np.array(places) / line.factor, np.zeros(len(places)), "o", **style)
-    text = "unstable" + ("; circles: boundaries, interpolated" if places else "")
-    ax.text(0.01, 0.015, text, transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+    found = boundaries_of(sweep, damping_percent(sweep))
+    _draw_circles(ax, [one.place / line.factor for one in found], [0.0] * len(found))
+    onsets = sorted((one for one in found if one.onset), key=lambda one: one.place)
+    taken = sum(text.get_gid() == _ONSET for text in ax.texts)
+    sweep_name = name_of_last(ax)
+    for row, one in enumerate(onsets[: max(0, _ROWS - taken)], taken):
+        at = one.place / line.factor
+        style: dict[str, Any] = {"textcoords": "offset points", "va": "top", "fontsize": SMALL_SIZE}
+        style |= {"bbox": white_box(0.8) | {"alpha": 0.8}, "annotation_clip": True, "zorder": 4}
+        low, high = ax.get_xlim()
+        right = at < low + _NEAR * (high - low)
+        style |= {"xytext": (5 if right else -5, -4 - 10 * row), "ha": "left" if right else "right"}
+        ax.annotate(
+            f"{', '.join(filter(None, (one.mode, sweep_name)))} {_rounded(at)}", (at, 0), gid=_ONSET, **style
+        )
+    if found:
+        note(ax, "Circles: boundaries, interpolated between points of the sweep")
+    if not any(text.get_text() == "unstable" for text in ax.texts):
+        ax.text(0.01, 0.015, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+
+
+def _rounded(value: float) -> str:
+    """Return a number that was interpolated: whole from 100 on, three digits below."""
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
+
+
+def _draw_circles(ax: Axes, x: list[float], y: list[float]) -> None:
+    style: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": "black", "zorder": 5}
+    ax.plot(x, y, "o", **style)

@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.plots.canvas import axes_or_new, grid, say_origin
-from proprotor.plots.style import COLOURS
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
+from proprotor.plots.style import COLOURS, in_style
 from proprotor.stability import places_of
 from proprotor.typing import Axes, Dataset
+from proprotor.units import KNOT, KTAS
 
 _DASHES = ("-", "--", "-.", ":")
 _USUAL = ("force_x", "force_z", "moment_x", "moment_y")
 
 
+@in_style
 def plot_gust_spectra(
     found: Dataset, ax: Axes | None = None, *, outputs: Sequence[str] | None = None
 ) -> Axes:
@@ -64,9 +66,10 @@ def plot_gust_spectra(
         xscale="log", yscale="log", xlabel="Frequency (Hz)", ylabel="Spectral density over variance (1/Hz)"
     )
     grid(ax)
-    ax.legend(fontsize=8)
+    ax.legend()
     about = found.attrs
     what = f"{about['component'].capitalize()} turbulence, {about['spectrum']}, {about['intensity']:g} m/s"
-    ax.set_title(what, loc="left", fontsize=9)
+    at = f" at {float(found.airspeed) / KNOT:.4g} {KTAS}" if "airspeed" in found else ""
+    note(ax, what + at)
     say_origin(ax, found.attrs, filter(None, [found.warning.item()]))
     return ax

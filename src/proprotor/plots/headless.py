@@ -10,17 +10,25 @@ from proprotor.typing import Axes, Figure
 
 @contextmanager
 def drawn(draw: Callable[[], Axes | Figure]) -> Iterator[tuple[Axes | Figure, Figure]]:
-    """Call a function that draws; yield the axes or figure that it returns, and their figure. Close it afterwards."""
+    """Call a function that draws; yield the axes or figure that it returns, and their figure. Close it afterwards.
+
+    What Matplotlib draws with is as before afterwards: a notebook shows its own pictures by something else.
+    """
     import matplotlib  # here, because matplotlib takes long to import
 
+    before = matplotlib.get_backend(auto_select=False)
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    plot = draw()
-    figure = plot.get_figure(root=True)
-    if figure is None:
-        raise RuntimeError("axes without a figure")
+    figure = None
     try:
+        plot = draw()
+        figure = plot.get_figure(root=True)
+        if figure is None:
+            raise RuntimeError("axes without a figure")
         yield plot, figure
     finally:
-        pyplot.close(figure)
+        if figure is not None:
+            pyplot.close(figure)
+        if before is not None:
+            matplotlib.use(before)

@@ -8,10 +8,11 @@ import numpy as np
 
 from proprotor.model.doubts import doubts_along, footnotes
 from proprotor.model.stamp import density_of
-from proprotor.plots.canvas import RIGHT, add_footer, grid, note, origin_of
+from proprotor.plots import small_print
+from proprotor.plots.canvas import grid, note, say_origin, two_axes, write_title
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, axis_of, written
-from proprotor.plots.style import COLOURS, LABEL_SIZE, UNSTABLE
+from proprotor.plots.style import COLOURS, LABEL_SIZE, UNSTABLE, in_style
 from proprotor.stability.margin_ranges import Needed, decibels
 from proprotor.typing import Array, Axes, Dataset, Figure
 
@@ -19,6 +20,7 @@ _TOPS = (30.0, 180.0)  # of the axes, dB and degrees: more is as good as no limi
 _MARKERS = "os^DvP"
 
 
+@in_style
 def plot_margins(
     margins: Dataset,
     *,
@@ -52,14 +54,11 @@ def plot_margins(
     InputError
         If the unit is no unit of airspeed.
     """
-    import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
-
     line = axis_of("airspeed", margins.airspeed.values, "m/s", unit, density_of(margins.attrs))
-    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 7))
-    figure.subplots_adjust(left=0.09, right=RIGHT, top=0.93, bottom=0.08, hspace=0.14)
-    add_footer(figure, " ".join(filter(None, (footer, origin_of(margins.attrs, _doubts(margins, line))))))
+    figure, (above, below) = two_axes((8, 7))
+    write_title(figure, title)
     needed = Needed(gain_margin, phase_margin)
-    _draw(above, line, margins, decibels(margins), _TOPS[0], needed.gain)
+    _draw(above, line, margins, decibels(margins), _TOPS[0], needed.gain, "dB")
     _draw(
         below,
         line,
@@ -67,11 +66,13 @@ def plot_margins(
         np.degrees(margins.phase_margin.values),
         _TOPS[1],
         float(np.degrees(needed.phase)),
+        "deg",
     )
     above.set_ylabel("Gain margin, either way (dB)")
     below.set_ylabel("Phase margin (deg)")
     below.set_xlabel(line.label)
-    figure.suptitle(title, x=0.09, y=0.985, ha="left", va="top", fontsize=11, parse_math=False)
+    small_print.add(below, footer)
+    say_origin(below, margins.attrs, _doubts(margins, line))
     return figure
 
 
@@ -81,7 +82,9 @@ def _doubts(margins: Dataset, line: Positions) -> list[str]:
     return list(footnotes(doubts, written(line.unit), line.factor))
 
 
-def _draw(ax: Axes, line: Positions, margins: Dataset, values: Array, top: float, needed: float) -> None:
+def _draw(
+    ax: Axes, line: Positions, margins: Dataset, values: Array, top: float, needed: float, unit: str
+) -> None:
     """Draw one margin (airspeed, loop) up to a top, the margin that is needed, and where the loop is unstable."""
     shown = np.where(np.isnan(values), np.nan, np.minimum(values, top))
     lines = []
@@ -98,7 +101,7 @@ def _draw(ax: Axes, line: Positions, margins: Dataset, values: Array, top: float
     ax.text(
         0.01,
         needed,
-        f"needed: {needed:.3g}",
+        f"needed: {needed:.3g} {unit}",
         fontsize=LABEL_SIZE,
         va="bottom",
         transform=ax.get_yaxis_transform(),
@@ -108,8 +111,8 @@ def _draw(ax: Axes, line: Positions, margins: Dataset, values: Array, top: float
     _mark_instability(ax, line, margins.stable.values)
     grid(ax)
     if (values > top).any():
-        note(ax, f"At {top:g}: that much or more, or no limit")
-    label_lines(ax, lines, "at some airspeeds")
+        note(ax, f"At {top:g} {unit}: that much or more, or no limit")
+    label_lines(ax, lines, "the margin")
 
 
 def _mark_instability(ax: Axes, line: Positions, stable: Array) -> None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from proprotor.plots.canvas import axes_or_new, say_origin
+from proprotor.plots.canvas import axes_or_new, note, say_origin
+from proprotor.plots.style import LABEL_SIZE, in_style
 from proprotor.typing import Axes, Dataset
 
 _DARK = 0.6  # of the criterion: from here on numbers are white
 
 
+@in_style
 def plot_mac(found: Dataset, ax: Axes | None = None) -> Axes:
     """Draw the modal assurance criterion of measured modes and modes of a model, with a frame around each pair.
 
@@ -31,7 +33,15 @@ def plot_mac(found: Dataset, ax: Axes | None = None) -> Axes:
     ax.imshow(mac, cmap="Greys", vmin=0, vmax=1, aspect="auto")
     for row, column in np.ndindex(mac.shape):
         colour = "white" if mac[row, column] > _DARK else "black"
-        ax.text(column, row, f"{mac[row, column]:.2f}", ha="center", va="center", fontsize=8, color=colour)
+        ax.text(
+            column,
+            row,
+            f"{mac[row, column]:.2f}",
+            ha="center",
+            va="center",
+            fontsize=LABEL_SIZE,
+            color=colour,
+        )
     names = found.model.values.tolist()
     for row, pair in enumerate(found.pair.values.tolist()):
         if pair:
@@ -40,7 +50,9 @@ def plot_mac(found: Dataset, ax: Axes | None = None) -> Axes:
                 across, [row + side for side in (-0.5, -0.5, 0.5, 0.5, -0.5)], color="#D55E00", linewidth=2
             )
     hertz = found.frequency_of_model.values / (2 * np.pi)
-    ax.set_xticks(range(columns), [f"{n}\n{f:.3g} Hz" for n, f in zip(names, hertz, strict=True)], fontsize=8)
+    ax.set_xticks(
+        range(columns), [f"{n}\n{f:.3g} Hz" for n, f in zip(names, hertz, strict=True)], fontsize=LABEL_SIZE
+    )
     own = [
         f"{name}, {frequency / (2 * np.pi):.3g} Hz, {round(100 * misfit, 1) + 0.0:+.1f} %"
         for name, frequency, misfit in zip(
@@ -50,7 +62,10 @@ def plot_mac(found: Dataset, ax: Axes | None = None) -> Axes:
             strict=True,
         )
     ]
-    ax.set_yticks(range(rows), own, fontsize=8)
-    ax.set_title("Measured modes and how far the model is off, by modes of the model", loc="left", fontsize=9)
+    ax.set_yticks(range(rows), own, fontsize=LABEL_SIZE)
+    ax.set(xlabel="Modes of the model", ylabel="Measured modes")
+    note(
+        ax, "Numbers: modal assurance criterion; frames: pairs; percent: how far the model's frequency is off"
+    )
     say_origin(ax, found.attrs)
     return ax

@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 
 from proprotor.errors import InputError, check_known
-from proprotor.plots.canvas import say_origin
+from proprotor.model.doubts import marked
+from proprotor.plots import small_print
+from proprotor.plots.canvas import note, say_origin
 from proprotor.plots.mode_motion import ModeMotion
-from proprotor.plots.style import LABEL_SIZE
+from proprotor.plots.style import LABEL_SIZE, in_style
 from proprotor.typing import Array, Axes
+from proprotor.units import KNOT, KTAS
 
 # The axes of each view: 0, 1, 2 for x, y, z, and the sign of the coordinate. x is up, y outboard, z along the shaft.
 # Seen from ahead, outboard is to the left on a right wing; the perspective is right-handed with x up.
@@ -34,6 +37,7 @@ _LINES = {
 _MARGIN = 0.25  # radii
 
 
+@in_style
 def plot_mode_shape(
     motion: ModeMotion, ax: Axes | None = None, *, view: str = "front", phase: float = 0.0
 ) -> Axes:
@@ -64,8 +68,37 @@ def plot_mode_shape(
     ax = _axes(ax, view)
     draw_still(ax, motion, view)
     draw_moving(ax, motion, view, phase)
+    _name_parts(ax)
+    note(ax, f"{title_of(motion)}; amplitude enlarged; thin grey: trim")
     say_origin(ax, motion.stamp, [f"Doubtful: {motion.warning}."] if motion.warning else ())
     return ax
+
+
+def title_of(motion: ModeMotion) -> str:
+    """Return the title of a mode: its name, airspeed, frequency and damping.
+
+    Parameters
+    ----------
+    motion : ModeMotion
+
+    Returns
+    -------
+    str
+    """
+    value = motion.eigenvalue
+    per_rev = f", {value.imag / motion.rotor_speed:.2f}/rev" if motion.rotor_speed else ""
+    damping = -100 * value.real / abs(value)
+    hertz = value.imag / (2 * np.pi)
+    return (
+        f"{motion.mode} at {marked(f'{motion.airspeed / KNOT:.0f}', motion.warning)} {KTAS}: {hertz:.2f} Hz{per_rev}, "
+        f"damping {damping:.2f} % of critical"
+    )
+
+
+def _name_parts(ax: Axes) -> None:
+    """Write a legend of the lines of the parts that the axes show."""
+    lines = {name: line for name in _LINES for line in ax.lines if line.get_color() == _LINES[name][0]}
+    ax.legend(list(lines.values()), list(lines), loc="upper right")
 
 
 def _axes(ax: Axes | None, view: str) -> Axes:
@@ -75,6 +108,7 @@ def _axes(ax: Axes | None, view: str) -> Axes:
         import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
 
         figure = plt.figure(figsize=(6, 5.5), layout="constrained")
+        small_print.own(figure)
         return figure.add_subplot(projection="3d" if solid else None)
     if solid != (ax.name == "3d"):
         raise InputError("ax", ax.name, f'must have {"" if solid else "no "}projection "3d" for this view')

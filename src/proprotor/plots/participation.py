@@ -11,13 +11,14 @@ from proprotor.errors import InputError, check_known
 from proprotor.plots.bars import name_bars
 from proprotor.plots.canvas import along, axes_or_new, say_origin
 from proprotor.plots.line_of_sweep import positions, written
-from proprotor.plots.style import COLOURS, LABEL_SIZE
+from proprotor.plots.style import COLOURS, in_style
 from proprotor.typing import Array, Axes, Dataset
 
 _LEAST = 0.01  # smallest share with which a coordinate has bars of its own
 _HATCHES = ("", "////", "....", "xxxx", "\\\\\\\\")
 
 
+@in_style
 def plot_participation(
     sweep: Dataset,
     mode: str,
@@ -69,7 +70,7 @@ def plot_participation(
     ax.set_xlabel(f"Participation in the mode “{mode}” (%)")
     ax.set_xlim(0, None)
     title = "Airspeed" if line.name == "airspeed" else line.label.partition(" (")[0]
-    ax.legend(title=title, fontsize=LABEL_SIZE, title_fontsize=LABEL_SIZE, loc="lower right")
+    ax.legend(title=title, loc="lower right")
     say_origin(ax, sweep.attrs, along(sweep.isel({line.name: points}), line))
     return ax
 

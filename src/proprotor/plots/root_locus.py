@@ -9,9 +9,9 @@ import numpy as np
 from proprotor.plots.canvas import Limits, along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
-from proprotor.plots.mode_lines import modes_drawn
+from proprotor.plots.mode_lines import earlier_sweeps, modes_drawn, named, styles_beside
 from proprotor.plots.points import draw_points
-from proprotor.plots.style import LABEL_SIZE, UNSTABLE, mode_styles, white_box
+from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, UNSTABLE, in_style, white_box
 from proprotor.tables.points import FREQUENCY, GROWTH, Points, Quantity
 from proprotor.tables.sweep_summary import broad_modes, growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
@@ -20,8 +20,11 @@ _RATIOS = (0.01, 0.02, 0.05, 0.10, 0.20, 0.50)
 _SMALLEST, _LARGEST = 3.5, 8.0  # size of the markers, points
 _APART = 14.0  # points: the first and the last number of a line would overlap if they were nearer
 _MARKS = 8  # markers of a line, at most
+_WORD = 40.0  # points: the length of a word
+_ROOM = 22.0  # points: a ray whose end is nearer to that of the ray before has no number
 
 
+@in_style
 def plot_root_locus(
     sweep: Dataset,
     ax: Axes | None = None,
@@ -32,6 +35,7 @@ def plot_root_locus(
     growth_limits: tuple[float, float] | None = None,
     frequency_limits: tuple[float, float] | None = None,
     points: Points | None = None,
+    name: str = "",
 ) -> Axes:
     """Draw how the roots s move in the upper half of their plane: Re s across, |Im s| up.
 
@@ -55,6 +59,8 @@ def plot_root_locus(
         unstable.
     points : Points, optional
         Of `proprotor.tables.points.read_points`: columns growth and frequency.
+    name : str
+        What the labels call this sweep, if the axes hold several; by default the case or the options, if these differ.
 
     Returns
     -------
@@ -74,23 +80,33 @@ def plot_root_locus(
     imaginary = np.where(np.isnan(real), np.nan, imaginary)
     _set_limits(ax, sweep, real, imaginary, growth_limits, frequency_limits)
     at = _round_values(line, marks)
-    lines = _draw(ax, sweep, real, imaginary, line, at)
+    lines = _draw(ax, sweep, real, imaginary, line, at, name)
     up = Quantity(FREQUENCY, "rad/s", per, {} if rotor_speed is None else {"per rev": per})
     growth = Quantity(GROWTH, "1/s", per, up.special)
     draw_points(ax, points, growth, up)
     _draw_rays(ax)
     ax.axvspan(0, max(ax.get_xlim()[1], 0), color=UNSTABLE, linewidth=0, zorder=0.5)
     ax.axvline(0, color="black", linewidth=0.8)
-    ax.text(0.99, 0.01, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3", ha="right")
+    _name_unstable(ax)
     shown_in = "per rev" if rotor_speed is not None else "rad/s"
     ax.set(xlabel=f"Growth Re s ({shown_in})", ylabel=f"Frequency |Im s| ({shown_in})")
     grid(ax)
     if len(at) > 1:
         ends = f"from {at[0]:g} to {at[-1]:g} {written(line.unit)}"
         note(ax, f"Markers every {at[1] - at[0]:g}, growing {ends}")
-    label_lines(ax, lines, "somewhere or throughout", tie=False)
+    label_lines(ax, lines, "growth or frequency", tie=False)
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
+
+
+def _name_unstable(ax: Axes) -> None:
+    """Write "unstable" into the strip of growth, upright where the strip is narrow."""
+    right = ax.get_xlim()[1]
+    if right <= 0 or any(text.get_text() == "unstable" for text in ax.texts):
+        return
+    narrow = right * ax.bbox.width / np.ptp(ax.get_xlim()) * points_per_pixel(ax) < _WORD
+    style: dict[str, Any] = {"rotation": 90 if narrow else 0, "transform": ax.get_xaxis_transform()}
+    ax.text(right / 2, 0.015, "unstable", fontsize=LABEL_SIZE, color="0.3", ha="center", **style)
 
 
 def _set_limits(
@@ -126,24 +142,26 @@ def _round_values(line: Positions, step: float | None) -> Array:
 
 
 def _draw(
-    ax: Axes, sweep: Dataset, real: Array, imaginary: Array, line: Positions, at: Array
+    ax: Axes, sweep: Dataset, real: Array, imaginary: Array, line: Positions, at: Array, name: str
 ) -> list[Line2D]:
-    """Draw a line for each mode with markers at round values; return the lines."""
-    lines: list[Line2D] = []
+    """Draw a line for each mode with markers at round values; return the lines that are to have names."""
+    lines: dict[str, Line2D] = {}
+    earlier = earlier_sweeps(ax)
     sizes = np.linspace(_LARGEST, _SMALLEST, len(at))[::-1] ** 2  # a single marker is large
     broad, gaps = broad_modes(sweep), leaps(sweep)
-    for place, (mode, style) in enumerate(zip(sweep.mode.values.tolist(), mode_styles(sweep), strict=True)):
+    for place, (mode, style) in enumerate(styles_beside(earlier, sweep)):
         plain = style._replace(marker="")._asdict()
         where, across, up = with_gaps(gaps[:, place], line.values, real[:, place], imaginary[:, place])
-        lines += ax.plot(across, up, label=mode, markersize=4, **plain)
+        (lines[mode],) = ax.plot(across, up, label=mode, markersize=4, **plain)
         # Linear between the points of the sweep; NaN beside failed points and gaps.
         order = np.argsort(where)
         x, y = (np.interp(at, where[order], part[order]) for part in (across, up))
         more: dict[str, Any] = {"color": style.color, "zorder": 3, "linewidths": 0.6, "edgecolors": "white"}
+        more |= {"color": "white", "edgecolors": style.color, "linewidths": 1.0} if earlier else {}
         ax.scatter(x, y, s=sizes, **more)
         if mode in broad:
             _write_ends(ax, x, y, at)
-    return lines
+    return named(ax, sweep, lines, name)
 
 
 def _write_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:
@@ -155,7 +173,12 @@ def _write_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:
     ends = ax.transData.transform(np.column_stack([x[[first, last]], y[[first, last]]]))
     far = np.hypot(*(ends[1] - ends[0])) * points_per_pixel(ax) > _APART
     for place in (first, last) if far else (last,):
-        style: dict[str, Any] = {"fontsize": 6.5, "color": "0.25", "textcoords": "offset points", "zorder": 4}
+        style: dict[str, Any] = {
+            "fontsize": SMALL_SIZE,
+            "color": "0.25",
+            "textcoords": "offset points",
+            "zorder": 4,
+        }
         where = (float(x[place]), float(y[place]))
         ax.annotate(f"{at[place]:g}", where, xytext=(5, 4), annotation_clip=True, **style)
 
@@ -165,11 +188,16 @@ def _draw_rays(ax: Axes) -> None:
     left, top = ax.get_xlim()[0], ax.get_ylim()[1]
     if left >= 0:
         return
-    for ratio in _RATIOS:
+    last: Array | None = None
+    for ratio in reversed(_RATIOS):
         slope = -ratio / np.sqrt(1 - ratio**2)  # Re s over |Im s|
         length = min(top, left / slope)
         ax.plot([0, slope * length], [0, length], color="0.6", linewidth=0.6, dashes=(6, 3), zorder=1)
-        style: dict[str, Any] = {"fontsize": 6.5, "color": "0.45", "textcoords": "offset points"}
+        end = ax.transData.transform((slope * length, length)) * points_per_pixel(ax)
+        if last is not None and np.hypot(*(end - last)) < _ROOM:
+            continue
+        last = end
+        style: dict[str, Any] = {"fontsize": SMALL_SIZE, "color": "0.45", "textcoords": "offset points"}
         place: dict[str, Any] = {"xytext": (0, -3), "va": "top", "ha": "center"}
         if length < top:
             place = {"xytext": (3, 0), "va": "center"}

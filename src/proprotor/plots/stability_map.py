@@ -12,17 +12,29 @@ from proprotor.model.stamp import density_of
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
 from proprotor.plots.points import draw_points, quantity_of
-from proprotor.plots.style import COLOURS, LABEL_SIZE, STABLE, white_box
+from proprotor.plots.style import (
+    COLOURS,
+    LABEL_SIZE,
+    STABLE,
+    TITLE_SIZE,
+    UNKNOWN,
+    UNSTABLE,
+    in_style,
+    white_box,
+)
 from proprotor.stability.boundary_lines import BoundaryLine
 from proprotor.tables.points import Points, Quantity
 from proprotor.typing import Array, Axes, Dataset
+from proprotor.units import KNOT, KTAS
 
 _DASHES = ("-", "--", "-.", ":")
 _Point = tuple[float, float]
 _Edge = tuple[int, int, int]  # row, column, and 0 for an edge along x or 1 for an edge along y
+_BORDER = 0.15  # of the axes: a name so near their edge is written away from the edge
 _ROOM = 0.06  # a region that is narrower than this share of the axes has no name in it
 
 
+@in_style
 def plot_stability_map(
     found: Dataset,
     ax: Axes | None = None,
@@ -32,6 +44,8 @@ def plot_stability_map(
     points: Points | None = None,
 ) -> Axes:
     """Draw the stability boundary in the plane of two inputs, with the stable side shaded.
+
+    Cells of the grid with a corner that could not be analysed are hatched, and their corners have a cross.
 
     Parameters
     ----------
@@ -63,6 +77,7 @@ def plot_stability_map(
     growth = found.growth.transpose(*names[::-1]).values
     vertices = found.boundary.values / np.array([x.factor, y.factor])
     _shade(ax, x.values, y.values, growth, vertices)
+    _hatch_unknown(ax, x.values, y.values, growth)
     if not lines:
         ax.plot(*vertices.T, color="black", linewidth=1.8)
     failed = np.argwhere(np.isnan(growth))
@@ -73,11 +88,12 @@ def plot_stability_map(
         draw_points(ax, points, _quantity(found, x), _quantity(found, y))
     _draw_named(ax, lines, x, y)
     _name_regions(ax, x.values, y.values, growth)
-    level = float(found.attrs.get("level", 0.0))
-    stable = f"“stable”: every mode has more than {100 * level:g} % of critical damping" if level else ""
-    crosses = "x: could not be analysed" if len(failed) else ""
-    if stable or crosses:
-        note(ax, "; ".join(filter(None, (stable, crosses))))
+    if "airspeed" in found.attrs:
+        note(ax, f"Everywhere at {float(found.attrs['airspeed']) / KNOT:.4g} {KTAS}")
+    if level := float(found.attrs.get("level", 0.0)):
+        note(ax, f"“stable”: every mode has more than {100 * level:g} % of critical damping")
+    if len(failed):
+        note(ax, "Crosses and hatches: could not be analysed")
     grid(ax)
     say_origin(ax, found.attrs, map_doubts(found))
     return ax
@@ -106,6 +122,21 @@ def _shade(ax: Axes, x: Array, y: Array, growth: Array, vertices: Array) -> None
     ]
     style: dict[str, Any] = {"facecolors": STABLE, "edgecolors": STABLE, "linewidths": 0.3, "zorder": 0.5}
     ax.add_collection(PolyCollection(polygons, **style))
+
+
+def _hatch_unknown(ax: Axes, x: Array, y: Array, growth: Array) -> None:
+    """Hatch the cells of which a corner could not be analysed; whether they are stable is not known."""
+    from matplotlib.collections import PolyCollection
+
+    ax.set_facecolor(UNSTABLE)
+    known = np.isfinite(growth)
+    cells = known[:-1, :-1] & known[1:, :-1] & known[:-1, 1:] & known[1:, 1:]
+    polygons = [
+        [(x[column], y[row]), (x[column + 1], y[row]), (x[column + 1], y[row + 1]), (x[column], y[row + 1])]
+        for row, column in np.argwhere(~cells)
+    ]
+    style = {f"{name}s" if name.endswith("color") else name: value for name, value in UNKNOWN.items()}
+    ax.add_collection(PolyCollection(polygons, zorder=0.4, **style))
 
 
 def _by_edge(x: Array, y: Array, vertices: Array) -> dict[_Edge, _Point]:
@@ -160,6 +191,9 @@ def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positi
         text: dict[str, Any] = {"fontsize": LABEL_SIZE, "color": colour, "bbox": box, "zorder": 4}
         text |= {"ha": "center" if abs(offset[0]) < 6 else "left" if offset[0] > 0 else "right"}
         text |= {"va": "center" if abs(offset[1]) < 6 else "bottom" if offset[1] > 0 else "top"}
+        across = float(ax.transLimits.transform(at)[0])
+        if min(across, 1 - across) < _BORDER:  # a name in the middle would leave the axes
+            text |= {"ha": "left" if across < 0.5 else "right"}
         ax.annotate(mode, at, xytext=offset, textcoords="offset points", annotation_clip=True, **text)
 
 
@@ -184,7 +218,7 @@ def _beside(ax: Axes, line: BoundaryLine, x: Positions, y: Positions) -> tuple[_
 
 
 def _name_regions(ax: Axes, x: Array, y: Array, growth: Array) -> None:
-    """Write "stable" and "unstable" where each region is widest."""
+    """Write "stable", "unstable" and "not known" where each region is widest."""
     from scipy.ndimage import distance_transform_edt  # here, because scipy.ndimage takes long to import
 
     fine = np.linspace(0, 1, 60)
@@ -192,9 +226,15 @@ def _name_regions(ax: Axes, x: Array, y: Array, growth: Array) -> None:
         np.abs((axis - axis[0]) / np.ptp(axis) - fine[:, None]).argmin(axis=1) for axis in (x, y)
     )
     signs = growth[np.ix_(rows, columns)]
-    for name, region in (("stable", signs <= 0), ("unstable", signs > 0)):
+    regions = {"stable": signs <= 0, "unstable": signs > 0, "not known": np.isnan(signs)}
+    for name, region in regions.items():
         room = distance_transform_edt(np.pad(region, 1))[1:-1, 1:-1] / len(fine)
         if room.max() >= _ROOM:
             row, column = np.unravel_index(room.argmax(), room.shape)
             style: dict[str, Any] = {"ha": "center", "va": "center", "color": "0.3", "style": "italic"}
-            ax.text(float(fine[column]), float(fine[row]), name, transform=ax.transAxes, fontsize=10, **style)
+            style |= {
+                "transform": ax.transAxes,
+                "fontsize": TITLE_SIZE,
+                "bbox": white_box(1.5) | {"alpha": 0.6},
+            }
+            ax.text(float(fine[column]), float(fine[row]), name, **style)

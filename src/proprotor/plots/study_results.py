@@ -13,7 +13,7 @@ from proprotor.plots.bars import name_bars
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.input_names import short_names
 from proprotor.plots.line_of_sweep import axis_of
-from proprotor.plots.style import COLOURS, LABEL_SIZE, white_box
+from proprotor.plots.style import COLOURS, LABEL_SIZE, in_style, white_box
 from proprotor.study.uncertainty import distribution
 from proprotor.tables.percentiles import percentile_text
 from proprotor.typing import Axes, Dataset
@@ -22,6 +22,7 @@ _BEYOND = {"above": "stable throughout the airspeeds", "below": "unstable from t
 _DASHES = ("--", "-", "-.", ":")
 
 
+@in_style
 def plot_distribution(
     results: Dataset,
     ax: Axes | None = None,
@@ -103,6 +104,7 @@ def _doubts(found: Dataset) -> list[str]:
     return [f"Doubtful for {int(found.doubtful)} designs: {text}."] if text else []
 
 
+@in_style
 def plot_sobol(indices: Dataset, ax: Axes | None = None, *, count: int = 15) -> Axes:
     """Draw each input's share of the variance, alone and with its interactions, with confidence intervals.
 
@@ -136,7 +138,7 @@ def plot_sobol(indices: Dataset, ax: Axes | None = None, *, count: int = 15) -> 
     name_bars(ax, short_names(shown.input.values.tolist()))
     result = str(indices.attrs.get("of", "the result")).replace("_", " ")
     ax.set_xlabel(f"Share of the variance of {result} (%)")
-    ax.legend(fontsize=LABEL_SIZE, loc="lower right")
+    ax.legend(loc="lower right")
     if len(order) < indices.sizes["input"]:
         note(ax, f"The {len(order)} of {indices.sizes['input']} inputs with the largest shares")
     say_origin(ax, indices.attrs, _doubts(indices))

@@ -1,26 +1,74 @@
-"""Colours, dashes and markers that differ for colour-blind readers and on grey prints; a style for each mode."""
+"""The style sheet of all plots: sizes, colours, dashes and markers; a style for each mode.
+
+Colours, dashes and markers differ for colour-blind readers and on grey prints.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
 from itertools import cycle
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from proprotor.tables.sweep_summary import broad_modes
 from proprotor.typing import Dataset
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish; without the yellow, which is too pale on white.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-DRIVES, DAMPS = "#D55E00", "#0072B2"  # of bars that lower stability, and of bars that raise stability
-STABLE = "#D8EEE6"  # a light green that prints as a light grey
-UNSTABLE = "#FBE9DF"
+# Of bars that lower stability, or of the lower end of a range, and of the others; light and dark on a grey print.
+DRIVES, DAMPS = "#E69F00", "#0072B2"
+STABLE = "#C4E3D8"  # a green that prints as a light grey
+UNSTABLE = "#FBE9DF"  # prints as almost white
+UNKNOWN: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "0.6", "hatch": "////", "linewidth": 0}
 GREY = "0.35"
-LABEL_SIZE = 8  # points
+TITLE_SIZE, LABEL_SIZE, SMALL_SIZE = 11, 8, 7  # points: titles, names within plots and legends, small print
+# Settings of Matplotlib for axes, their texts and legends; a user's own settings go before these.
+SHEET: dict[str, Any] = {
+    "axes.edgecolor": "0.25",
+    "axes.labelsize": 9.0,
+    "axes.linewidth": 0.7,
+    "axes.titlelocation": "left",
+    "axes.titlesize": TITLE_SIZE,
+    "hatch.linewidth": 0.7,
+    "legend.edgecolor": "0.8",
+    "legend.fontsize": LABEL_SIZE,
+    "legend.framealpha": 0.95,
+    "legend.title_fontsize": LABEL_SIZE,
+    "xtick.labelsize": LABEL_SIZE,
+    "ytick.labelsize": LABEL_SIZE,
+}
 _DASHES = ("-", "--", ":")
 _SYMMETRIC, _ANTISYMMETRIC = ("-", "-."), ("--", ":")  # dashes of the modes of an aircraft
+_LATER = {  # dashes of the same line of a further sweep on the same axes
+    "-": (0, (6, 1.6)),
+    "--": (0, (3, 3)),
+    ":": (0, (1, 3)),
+    "-.": (0, (8, 2, 1, 2, 1, 2)),
+}
 _MARKERS = "s^DvP<>"  # on broad lines, because their colours alone do not differ on a grey print
 
 # Hatches of bars by the status of a number; the bar of a number that was read in a source has no hatch.
 STATUS_HATCHES = {"recalled": "////", "assumed": "xxxx", "calibrated": "...."}
+
+
+_Given = ParamSpec("_Given")
+_Drawn = TypeVar("_Drawn")
+
+
+def in_style(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
+    """Draw with the settings of `SHEET` that the user has left as Matplotlib has them."""
+
+    @wraps(draw)
+    def drawn(*args: _Given.args, **given: _Given.kwargs) -> _Drawn:
+        import matplotlib  # here, because matplotlib takes long to import
+
+        usual: Any = matplotlib.rcParamsDefault  # typed for literal names alone
+        now: Any = matplotlib.rcParams
+        free: Any = {name: value for name, value in SHEET.items() if now[name] == usual[name]}
+        with matplotlib.rc_context(free):
+            return draw(*args, **given)
+
+    return drawn
 
 
 def white_box(pad: float) -> dict[str, Any]:
@@ -32,7 +80,7 @@ class ModeStyle(NamedTuple):
     """Style of the line of one mode; the fields are arguments of Matplotlib's `plot`."""
 
     color: str
-    linestyle: str
+    linestyle: Any
     linewidth: float
     marker: str
 
@@ -58,6 +106,14 @@ def mode_styles(sweep: Dataset) -> list[ModeStyle]:
         )
         for mode in modes
     ]
+
+
+def of_later_sweep(style: ModeStyle, place: int) -> ModeStyle:
+    """Return the style of a mode's line in a further sweep on the same axes, the `place` of which is 1 or more."""
+    _, dashes = _LATER[style.linestyle]
+    longer = 1 + 0.6 * (place - 1)
+    width = style.linewidth * (0.75 if style.linewidth > 2 else 1)
+    return style._replace(linestyle=(0, tuple(longer * part for part in dashes)), linewidth=width)
 
 
 def _motion(mode: str) -> str:

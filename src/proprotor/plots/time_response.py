@@ -6,14 +6,15 @@ from collections.abc import Sequence
 from typing import Any
 
 from proprotor.errors import InputError
-from proprotor.plots.canvas import axes_or_new, grid, say_origin
-from proprotor.plots.style import COLOURS
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
+from proprotor.plots.style import COLOURS, in_style
 from proprotor.stability import places_of
 from proprotor.typing import Axes, Dataset
 
 _DASHES = ("-", "--", "-.", ":")
 
 
+@in_style
 def plot_time_response(
     found: Dataset, ax: Axes | None = None, *, outputs: Sequence[str] | str | None = None
 ) -> Axes:
@@ -56,7 +57,10 @@ def plot_time_response(
                 "color": COLOURS[(row + place) % len(COLOURS)],
                 "linestyle": _DASHES[(row + place) % 4],
             }
-            label = known[column] + ("" if gradient is None else f", H = {gradient:.3g} m")
+            of_gust = "" if gradient is None else f"H = {gradient:.3g} m"
+            label = ", ".join(
+                filter(None, (known[column] if len(columns) > 1 or not of_gust else "", of_gust))
+            )
             ax.plot(found.time.values, response.values[row, :, column], label=label, linewidth=1.4, **style)
     ax.axhline(0, color="black", linewidth=0.6)
     ax.set(
@@ -64,6 +68,8 @@ def plot_time_response(
     )
     ax.margins(x=0)
     grid(ax)
-    ax.legend(fontsize=8)
+    ax.legend()
+    if "gradient" in found.dims:
+        note(ax, "H: distance in which a gust grows from nothing to its full speed")
     say_origin(ax, found.attrs, filter(None, [str(found.warning.item())]))
     return ax

@@ -13,7 +13,7 @@ from proprotor.model.stamp import density_of
 from proprotor.plots.bars import centre_on_zero, name_bars, signed, write_beside
 from proprotor.plots.canvas import axes_or_new, note, say_origin
 from proprotor.plots.input_names import short_names
-from proprotor.plots.style import DAMPS, DRIVES, STATUS_HATCHES
+from proprotor.plots.style import DAMPS, DRIVES, STATUS_HATCHES, in_style
 from proprotor.typing import Axes, Dataset
 from proprotor.units import airspeed_unit, speed_factor
 
@@ -26,6 +26,7 @@ class _Bar(NamedTuple):
     high: float
 
 
+@in_style
 def plot_sensitivity(
     found: Dataset,
     ax: Axes | None = None,
@@ -147,4 +148,4 @@ def _legend(ax: Axes, statuses: set[str], *, both: bool) -> None:
     for status, hatch in STATUS_HATCHES.items():
         if status in statuses:
             handles.append(Patch(facecolor="0.45", edgecolor="white", hatch=hatch, linewidth=0, label=status))
-    ax.legend(handles=handles, fontsize=7, loc="lower right", framealpha=0.95)
+    ax.legend(handles=handles, loc="lower right")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,7 +70,12 @@ class Causes:
     attribution: Dataset
 
 
-def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> Findings:
+def analyse(
+    case: Case,
+    airspeeds: Array | None,
+    options: Mapping[str, Any],
+    tell: Callable[[str], object] = lambda step: None,
+) -> Findings:
     """Run all analyses of a report.
 
     Parameters
@@ -80,6 +85,8 @@ def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> 
         m/s; the airspeeds of `Case.flutter_point` by default.
     options : mapping
         Options of the model, see `proprotor.rotor.options.Options`.
+    tell : callable
+        Told the name of each step as it begins.
 
     Raises
     ------
@@ -87,16 +94,20 @@ def analyse(case: Case, airspeeds: Array | None, options: Mapping[str, Any]) -> 
         As `Case.sweep`.
     """
     speeds = scan_speeds(case) if airspeeds is None else airspeeds
+    tell("Frequency and damping")
     sweep = case.sweep(speeds, **options)
     trim = case.linearize(speeds, **options).trim
+    tell("Looking for boundaries")
     found = flutter_point(case, speeds, **options)
     speed, mode = (found.speed, found.mode) if found.mode else _damped_least(sweep)
     causes, no_causes = None, "" if mode else "no airspeed could be analysed"
     if mode:
+        tell("Deriving causes and sensitivities")
         try:
             causes = _causes(case, speed, mode, bool(found.mode), speeds, options)
         except InputError as error:
             no_causes = str(error)
+    tell("Envelope")
     return Findings(sweep, trim, found, speed, mode, causes, no_causes, *_envelope(case, options))
 
 

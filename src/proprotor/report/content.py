@@ -21,7 +21,8 @@ from proprotor.model.provenance import doubtful_inputs, reservations
 from proprotor.report import pictures
 from proprotor.report.analyses import Findings
 from proprotor.report.document import Document, Section, Table, Text
-from proprotor.stability.flutter_messages import boundary_record, boundary_row, verdict
+from proprotor.report.summary import summary, verdict
+from proprotor.stability.flutter_messages import boundary_record, boundary_row
 from proprotor.tables.amounts_table import amounts_tables
 from proprotor.tables.envelope_table import (
     COLUMNS,
@@ -67,6 +68,7 @@ def report_document(
     deck_hash: str,
     date: str,
     unit: str = "kt",
+    margin_at: float | None = None,
     points: Points | None = None,
 ) -> Document:
     """Return the report on a case.
@@ -84,6 +86,8 @@ def report_document(
         Day of the report, ISO 8601.
     unit : str
         Unit of airspeeds.
+    margin_at : float, optional
+        Airspeed (m/s) whose margin to flutter is wanted.
     points : Points, optional
         Of `proprotor.tables.points.read_points`, to stand on the plots of frequency and damping.
 
@@ -95,19 +99,19 @@ def report_document(
     unit, factor = airspeed_unit(unit), float(speed_factor(unit, case.operation.density, field="unit"))
     table = SweepTable(found.sweep, float(case.operation.rotor_speed), unit)
     sections = (
-        Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
         Section("Envelope", tuple(_envelope(found))),
-        Section("What was analysed", tuple(_model(case, table, settings))),
-        Section("Conventions", (Text(_CONVENTIONS),)),
+        Section("Boundaries", tuple(_boundaries(case, found, unit, factor))),
+        Section("Modes", tuple(_modes(table))),
+        Section("Trim", tuple(_trim(found, table))),
         Section(
             "Frequency and damping", tuple(pictures.of_sweep(case, found, unit, points) if found.mode else ())
         ),
         Section(f"Causes {_where(found, unit, factor)}".strip(), tuple(_causes(found, unit, factor))),
-        Section("Modes", tuple(_modes(table))),
         Section("Sensitivities", tuple(_sensitivities(case, found, unit, factor))),
-        Section("Trim", tuple(_trim(found, table))),
-        Section("Inputs", tuple(_inputs(case))),
+        Section("What was analysed", tuple(_model(case, table, settings))),
+        Section("Conventions", (Text(_CONVENTIONS),)),
         Section("What the inputs amount to", tuple(_amounts(case))),
+        Section("Inputs", tuple(_inputs(case))),
         Section("Reproduction", (_reproduction(case, deck_hash, date),)),
     )
     failures = (f"Not analysed {airspeeds}: {reason}." for airspeeds, _, reason in _failed(table))
@@ -115,27 +119,11 @@ def report_document(
         title=case.title or case.name,
         subtitle=f"Case {case.name}, {heading(case).rpartition(', ')[2]}",
         date=date,
-        verdict=tuple(_verdict(found, table, unit, factor)),
+        verdict=tuple(verdict(case, found, margin_at, unit, factor)),
         caution=(*reservations(case), *case.warnings, *table.doubts(), *failures),
+        summary=tuple(summary(case, found, settings, unit, factor)),
         sections=tuple(section for section in sections if section.blocks),
     )
-
-
-def _verdict(found: Findings, table: SweepTable, unit: str, factor: float) -> Iterator[str]:
-    """Yield the sentences at the top of the report: the flutter speed, and other results of the search."""
-    if table.failed.all():
-        yield "No airspeed could be analysed."
-        return
-    if found.flutters:
-        omega = table.rotor_speed
-        yield (
-            f"Flutter speed {marked(f'{found.flutter.speed / factor:.2f}', found.flutter.warning)} {unit}: "
-            f"{found.flutter.mode}, {found.flutter.kind}, "
-            f"at {found.flutter.frequency / (2 * math.pi):.3f} Hz, {found.flutter.frequency / omega:.3f} per rev."
-        )
-    for sentence in verdict(found.flutter, None, unit, factor):
-        if not (found.flutters and sentence.startswith("Flutter speed")):
-            yield sentence
 
 
 def _failed(table: SweepTable) -> Iterator[tuple[str, str, str]]:

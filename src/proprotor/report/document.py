@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 
@@ -38,14 +40,35 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A plot with its caption, a description for readers who cannot see it, and its share of the width of a sheet."""
+    """A plot with its caption, drawn in the form that a layout asks for.
+
+    Attributes
+    ----------
+    name, caption : str
+    alt : str
+        A description for readers who cannot see the plot.
+    draw : callable
+        Returns the plot as a file of the form "svg" or "png".
+    share : float
+        Share of the width of a sheet.
+    """
 
     kind: ClassVar[str] = "picture"
     name: str
     caption: str
     alt: str
-    svg: bytes
+    draw: Callable[[str], bytes]
     share: float = 1.0
+
+    @cached_property
+    def svg(self) -> bytes:
+        """The plot as lines, for a page."""
+        return self.draw("svg")
+
+    @cached_property
+    def png(self) -> bytes:
+        """The plot as dots, for text processors, which cannot read lines."""
+        return self.draw("png")
 
 
 @dataclass(frozen=True)
@@ -74,7 +97,10 @@ class Document:
         Sentences on the results.
     caution : tuple of str
         Reservations about the results, a sentence each.
+    summary : tuple of Text and Table
+        What else stands on the first page.
     sections : tuple of Section
+        What stands on the further pages.
     """
 
     title: str
@@ -82,4 +108,5 @@ class Document:
     date: str
     verdict: tuple[str, ...]
     caution: tuple[str, ...]
+    summary: tuple[Text | Table, ...]
     sections: tuple[Section, ...]

@@ -52,5 +52,5 @@ def _plain(part: Any) -> Any:
     """Return a part of a document as data for JSON; a picture without its content, which is a file by itself."""
     if isinstance(part, frozenset):
         return sorted(part)
-    names = [field.name for field in fields(part) if field.name != "svg"] + ["kind"] * hasattr(part, "kind")
+    names = [field.name for field in fields(part) if field.name != "draw"] + ["kind"] * hasattr(part, "kind")
     return {name: getattr(part, name) for name in names}

@@ -50,6 +50,8 @@ Loads and trim:
     trim_reasons         reasons and warnings
     trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
+    trim_compiled        the steps of a stage of it by the compiled functions
+    in_flight            trim and matrices of rotors without any reservation, in one compiled call
 
 A rotor at an angle to its flight, or in a pull-up:
     around_the_turn      periodic functions at equal steps of azimuth
@@ -69,11 +71,12 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
 from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
-from proprotor.rotor.trim import UNKNOWNS, Target, Trim, has_offset_mass, trim_target, with_trim
-from proprotor.rotor.trim_solver import Settled, solve_trim
+from proprotor.rotor.trim import UNKNOWNS, Target, Trim, has_offset_mass, take, trim_target, with_trim
+from proprotor.rotor.trim_solver import Settled, balance_of, solve_trim
 
 __all__ = [
     "HELD",
@@ -97,8 +100,10 @@ __all__ = [
     "Trim",
     "Warns",
     "around_the_turn",
+    "balance_of",
     "elastic_blade",
     "element_chain",
+    "find_in_flight",
     "from_stations",
     "fused",
     "generated",
@@ -111,9 +116,11 @@ __all__ = [
     "options",
     "periodic_trim",
     "section_loads",
+    "serves_in_flight",
     "smooth_table",
     "solve_trim",
     "standard_air",
+    "take",
     "trim_target",
     "with_trim",
     "write_c81",

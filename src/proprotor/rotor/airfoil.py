@@ -80,10 +80,10 @@ class Warns(Protocol):
 
 
 # Limits of a straight lift line and of the Prandtl-Glauert factor (assumed, typical of thin sections).
-_LINEAR_ALPHA = np.radians(12.0)
-_LINEAR_MACH = 0.85
-_BEYOND_ALPHA = f"angle of attack beyond {np.degrees(_LINEAR_ALPHA):.0f} deg"
-_BEYOND_MACH = f"Mach number beyond {_LINEAR_MACH:g}"
+LINEAR_ALPHA = np.radians(12.0)
+LINEAR_MACH = 0.85
+_BEYOND_ALPHA = f"angle of attack beyond {np.degrees(LINEAR_ALPHA):.0f} deg"
+_BEYOND_MACH = f"Mach number beyond {LINEAR_MACH:g}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,6 +207,6 @@ class Airfoil:
             Masks of the broadcast shape, by reason.
         """
         return {
-            _BEYOND_ALPHA: np.abs(alpha) > _LINEAR_ALPHA,
-            _BEYOND_MACH: np.real(mach) > _LINEAR_MACH,
+            _BEYOND_ALPHA: np.abs(alpha) > LINEAR_ALPHA,
+            _BEYOND_MACH: np.real(mach) > LINEAR_MACH,
         }

@@ -124,9 +124,14 @@ def rotor_matrices(
     blade = {name: quantities[name] for name in _names(plans, segments is not None) if name in quantities}
     along = None if segments is None else {name: segments[name] for name in of_segments(plans)}
     if compiled and have_c(plans):
-        shapes = {name: places.shape for name, places in _layout(plans, "in_vacuum").places.items()}
-        return compiled_plans.matrices_of_rotor(plans, points, blade, along, shapes)
+        return compiled_plans.matrices_of_rotor(plans, points, blade, along, shapes_of(plans))
     return _one_point(plans, blade, along) if one else _batch(plans, blade, along, points)
+
+
+@cache
+def shapes_of(plans: ModuleType) -> Mapping[str, tuple[int, int]]:
+    """Return rows and columns of M, C, K and B."""
+    return {name: places.shape for name, places in _layout(plans, "in_vacuum").places.items()}
 
 
 @cache

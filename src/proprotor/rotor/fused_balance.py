@@ -6,6 +6,7 @@ points the last, so that the points of a block lie side by side in the cache.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cache
 from types import ModuleType
@@ -17,6 +18,7 @@ from proprotor.compiled import plans as compiled_plans
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.fused import Layout, pool_of, values_of
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.kept import kept
 from proprotor.rotor.quadrature import POWERS, RadialQuadrature
 from proprotor.rotor.section_loads import LOAD_MOMENTS, BladeSections, mark_doubts
 from proprotor.typing import Array
@@ -128,16 +130,21 @@ def balanced(
 
 
 def compiled_blades(
-    sections: BladeSections, quantities: _Quantities, compressibility: bool
+    sections: BladeSections, quantities: _Quantities, compressibility: bool, **closing: Any
 ) -> compiled_plans.Blades:
-    """Return blades at many points for the compiled plans."""
+    """Return blades at many points for the compiled plans, with what closes their trim, see `compiled_plans.Blades`."""
+    met = quantities if compressibility else dict(quantities) | {"speed_of_sound": math.inf}
+    of_points = {"tip": quantities["radius"], **closing}
+    return compiled_plans.Blades(met, sections.sides, _stations_of(sections), of_points)
+
+
+@kept
+def _stations_of(sections: BladeSections) -> compiled_plans.Stations:
     quadrature, airfoil, along = sections.quadrature, vars(sections.airfoil), sections.along
-    met = quantities if compressibility else dict(quantities) | {"speed_of_sound": np.inf}
-    names = ("lift_slope", "zero_lift_angle", "drag", "moment")
-    own = {"radius": quadrature.stations, "chord": along.chord, "twist": along.twist}
-    own |= {"square_ratio": along.square, "cube_ratio": along.cube} | {name: airfoil[name] for name in names}
-    ends = [0, *(one.stop for one in quadrature.slices)]
-    return compiled_plans.Blades(met, sections.sides, ends, own, quadrature.weights)
+    own = {"radius": quadrature.stations, "chord": along.chord, "twist": along.twist, "bent": along.bent}
+    own |= {"square_ratio": along.square, "cube_ratio": along.cube}
+    own |= {name: airfoil[name] for name in OF_AIRFOIL}
+    return compiled_plans.Stations.of([0, *(one.stop for one in quadrature.slices)], own, quadrature.weights)
 
 
 def _compiled(

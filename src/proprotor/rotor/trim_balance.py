@@ -27,6 +27,7 @@ from proprotor.typing import Array
 
 LARGEST_STEP = 0.3  # rad; Newton starts far from a blade that has coned and lagged
 _COMPLEX_STEP = 1e-30
+_REAL = np.dtype(float)
 # rad, the last step: the error of the loads. Convergence is quadratic, so the trim itself is exact to rounding.
 _CONVERGED = 1e-13
 # rad, a step that is no smaller than half of the step before: rounding limits convergence, as for a spring a hundred
@@ -125,7 +126,7 @@ class Balance:
             self.options.backend == "compiled"
             and have_c(self.plans)
             and not self.sections.is_complex
-            and not any(map(np.iscomplexobj, numbers))
+            and not any(map(is_complex, numbers))
         )
 
     @functools.cached_property
@@ -314,6 +315,13 @@ def _residual(quantities: Mapping[str, Any]) -> Array:
     if has_offset_mass(quantities):
         residual = residual + evaluate(equations.offset_residual, quantities)[..., equations.TRIM]
     return np.asarray(residual)
+
+
+def is_complex(value: Any) -> bool:
+    """Return whether a number or an array is complex."""
+    if type(value) is float:  # as most are: to ask about arrays takes longer
+        return False
+    return isinstance(value, complex) or getattr(value, "dtype", _REAL).kind == "c"
 
 
 def newton_step(slopes: Array, residual: Array) -> Array:

@@ -87,22 +87,15 @@ def contraction(
 
 def near_each_other(balance: Balance, found: Slopes, expected: Slopes) -> Array:
     """Return whether slopes at all of the loads are so near the expected ones that one equilibrium has both."""
-    if not balance.compiled:
-        return _near_each_other(balance.sprung, found, expected)
-    near = bounds.near_each_other(found.full, expected.full)
-    left = np.flatnonzero(~near)
-    near[left] = _near_each_other(balance.sprung, found.of(left), expected.of(left))
-    return near
-
-
-def _near_each_other(sprung: Array, found: Slopes, expected: Slopes) -> Array:
+    if balance.compiled:
+        return bounds.near_each_other(balance.sprung, found, expected)
 
     def radius(_: Array, found: Slopes, expected: Slopes) -> Array:
         """Return the radius of the relative difference of the slopes."""
         matrix, right = points_last(expected.full), points_last(found.full - expected.full)
         return _radius(np.abs(eliminate(matrix, right)), CONTRACTION)
 
-    return _by_angles_or_moments(sprung, radius, found, expected) <= CONTRACTION
+    return _by_angles_or_moments(balance.sprung, radius, found, expected) <= CONTRACTION
 
 
 def leads_to_end(ends: Array) -> bool:
@@ -138,12 +131,11 @@ def at_end(
 ) -> Array:
     """Return whether points (n,) with these slopes at the start and here are at the end of the path, by the bound."""
     smooth = isinstance(balance.sections.airfoil, Airfoil)
+    if smooth and balance.compiled:
+        return bounds.lead_to_end(balance.sprung, before, after)
     half_way = {name: (start[name] + state[name]) / 2 for name in UNKNOWNS}
     between = None if smooth else balance.near(half_way, rows, share=0.5).slopes
-    found = np.zeros(len(rows), dtype=bool)
-    if smooth and balance.compiled:
-        found = bounds.lead_to_end(before, after)
-    left = np.flatnonzero(~found)
+    found, left = np.zeros(len(rows), dtype=bool), np.arange(len(rows))
     for windows in _WINDOWS:
         if not len(left):
             break

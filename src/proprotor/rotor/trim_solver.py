@@ -25,7 +25,16 @@ from proprotor.rotor.fused_balance import segments_of
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections, mark_doubts
 from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim, has_offset_mass
-from proprotor.rotor.trim_balance import Balance, Linear, Slopes, State, copy_state, is_last, newton_step
+from proprotor.rotor.trim_balance import (
+    Balance,
+    Linear,
+    Slopes,
+    State,
+    copy_state,
+    is_complex,
+    is_last,
+    newton_step,
+)
 from proprotor.rotor.trim_bound import at_end, near_each_other
 from proprotor.rotor.trim_of_one import Found, trim_of_one
 from proprotor.rotor.trim_path import Path, follow
@@ -36,7 +45,6 @@ from proprotor.typing import Array
 _ITERATIONS = 40
 _NEAR = 1e-3  # rad, the last step on a few stations; the next would be below the error of these stations
 _SIDES = ("beyond_flap_hinge", "beyond_lag_hinge")  # of all points alike
-_REAL = np.dtype(float)
 _ALMOST = 1e-10  # rad, of the step that would follow: the slopes are those of the trim
 
 
@@ -131,21 +139,28 @@ def solve_trim(
     one : bool
         Compute the only point with plain numbers where this is possible.
     """
-    free = _free_unknowns(options, target.finds_collective)
-    balance = Balance(sections, quantities, options, target, free, points)
+    balance = balance_of(sections, quantities, options, target, points)
     numbers = (*quantities.values(), target.collective, target.load)
     with np.errstate(all="ignore"):
-        if sections.is_complex or any(map(_is_complex, numbers)):
+        if sections.is_complex or any(map(is_complex, numbers)):
             return _complex_trim(balance, few, points)
-        if one and free and balance.fused and few is sections and not has_offset_mass(quantities):
+        if one and balance.free and balance.fused and few is sections and not has_offset_mass(quantities):
             found = trim_of_one(balance)
             if found is not None:
                 return _settled(balance, found)
         search = _Search.of(balance, points)
-        if free:
+        if balance.free:
             search.come_near(balance if few is sections else replace(balance, sections=few))
             search.finish()
         return _settle(balance, search.state, search.before, search.reason, search.iterations, search.last)
+
+
+def balance_of(
+    sections: BladeSections, quantities: Mapping[str, Any], options: Options, target: Target, points: int
+) -> Balance:
+    """Return the balance of a blade at all points, see `solve_trim`."""
+    free = _free_unknowns(options, target.finds_collective)
+    return Balance(sections, quantities, options, target, free, points)
 
 
 @dataclass(eq=False)
@@ -388,13 +403,6 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
         step, _ = _newton(balance, state, rows)
         balance.take_step(state, rows, step)
     return _settle(balance, state, state, trim.reason, trim.iterations)
-
-
-def _is_complex(value: Any) -> bool:
-    """Return whether a number or an array is complex."""
-    if type(value) is float:  # as most are: to ask about arrays takes longer
-        return False
-    return isinstance(value, complex) or getattr(value, "dtype", _REAL).kind == "c"
 
 
 def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:

@@ -21,7 +21,7 @@ FARTHEST = np.radians(60)
 _SEARCH = np.radians(1)  # step of the search for the rigid blade's root
 _REFINEMENTS = 60
 _SHARP = 1e-12  # rad, of the rigid blade's root
-_NO_SPRING = 1e-90  # of the other spring, or N m/rad
+NO_SPRING = 1e-90  # of the other spring, or N m/rad
 
 
 def first_guess(balance: Balance, points: int) -> State:
@@ -47,7 +47,7 @@ def is_limp(quantities: Mapping[str, Any]) -> Any:
     """Return whether a lag hinge at the centre has no spring."""
     names = ("lag_hinge_offset", "lag_first_moment", "lag_stiffness", "flap_stiffness")
     offset, mass, lag, flap = (np.real(quantities[name]) for name in names)
-    return (lag <= _NO_SPRING * np.maximum(flap, 1)) & (offset * mass == 0)
+    return (lag <= NO_SPRING * np.maximum(flap, 1)) & (offset * mass == 0)
 
 
 def undeflect(balance: Balance, state: State, rows: Array) -> Array:

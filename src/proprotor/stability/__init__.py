@@ -70,7 +70,7 @@ from proprotor.stability.following import Branches, follow
 from proprotor.stability.frequency_response import frequency_response
 from proprotor.stability.growth_constraint import SHARPNESS, growth_constraint
 from proprotor.stability.kinds import FLUTTER, flies_free, kinds
-from proprotor.stability.map import stability_map
+from proprotor.stability.map import largest_growth, stability_map
 from proprotor.stability.margin_ranges import Kept, Needed, decibels, kept_ranges
 from proprotor.stability.margins import margins
 from proprotor.stability.matching import NOT_TOLD, Modes, Spectrum, match_modes
@@ -85,7 +85,7 @@ from proprotor.stability.modes import (
 )
 from proprotor.stability.named_modes import named_modes
 from proprotor.stability.names_and_steps import Steps, Walk, joined, names_and_steps
-from proprotor.stability.parameter_lines import ANCHORS, ParameterLine, tip_speed
+from proprotor.stability.parameter_lines import AIRSPEED, ANCHORS, ParameterLine, models_at, tip_speed
 from proprotor.stability.participation import coordinate_shares
 from proprotor.stability.root_error import error_near_zero
 from proprotor.stability.sensitivity import at_boundary, damping_rate, eigenvalue_rates, sensitivity
@@ -102,6 +102,7 @@ from proprotor.stability.transfer import (
 )
 
 __all__ = [
+    "AIRSPEED",
     "ANCHORS",
     "DOUBTFUL",
     "FLUTTER",
@@ -163,9 +164,11 @@ __all__ = [
     "joined",
     "kept_ranges",
     "kinds",
+    "largest_growth",
     "margins",
     "match_modes",
     "mode_columns",
+    "models_at",
     "modes",
     "moving",
     "named_at",

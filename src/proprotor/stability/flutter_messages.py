@@ -107,7 +107,31 @@ def failed_records(found: FlutterPoint) -> list[dict[str, Any]]:
 
 
 def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
-    """Yield sentences on where a case becomes unstable, and on the margin at an airspeed (m/s)."""
+    """Yield sentences on a search for boundaries, the answer last, where people look at the end of a terminal.
+
+    Parameters
+    ----------
+    found : FlutterPoint
+    at : float, optional
+        Airspeed (m/s) whose margin is wanted.
+    unit, factor : str, float
+        Unit of airspeeds, and the unit in m/s.
+    """
+    yield from remarks(found, unit, factor)
+    yield from answer(found, at, unit, factor)
+
+
+def remarks(found: FlutterPoint, unit: str, factor: float) -> Iterator[str]:
+    """Yield sentences on what stands beside the answer: other kinds of onsets, and airspeeds that failed."""
+    yield from _other_onsets(found, unit, factor)
+    yield from (stretch.message(unit, factor) for stretch in found.failed)
+
+
+def answer(found: FlutterPoint, at: float | None, unit: str, factor: float) -> Iterator[str]:
+    """Yield sentences on where a case becomes unstable, and on the margin at an airspeed; arguments of `verdict`."""
+    if not math.isfinite(found.searched[0]):
+        yield "No airspeed could be analysed."
+        return
     low, high = (marked(f"{at / factor:.4g}", doubt_at(found.doubts, at)) for at in found.searched)
     beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
     if found.unstable_at_start:
@@ -122,10 +146,13 @@ def verdict(found: FlutterPoint, at: float | None, unit: str, factor: float) -> 
         speed = marked(f"{found.speed / factor:.2f}", found.warning)
         other = _and_equivalent(found.speed, found.stamp, unit, found.warning)
         yield f"Flutter speed {speed} {unit}{other} ({found.mode}, {found.kind})."
-    yield from _other_onsets(found, unit, factor)
-    yield from (stretch.message(unit, factor) for stretch in found.failed)
-    if at is None:
-        return
+    if at is not None:
+        yield from _margin(found, at, unit, factor)
+
+
+def _margin(found: FlutterPoint, at: float, unit: str, factor: float) -> Iterator[str]:
+    """Yield sentences on an airspeed: whether it was searched, whether it is stable there, and the margin."""
+    beyond = f"below {100 * found.level:g} % of critical" if found.level else "unstable"
     count = modes_beyond(found, at)
     if count is None:
         ends = " to ".join(f"{end / factor:.4g}" for end in found.searched)

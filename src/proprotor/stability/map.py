@@ -46,10 +46,10 @@ class _Edges(NamedTuple):
     eigenvalue: Array
 
 
-def _largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
-    """Return the largest growth Re λ + ζ0 |λ| of all modes (...,) and the eigenvalue that has it; NaN at failed points.
+def largest_growth(model: LinearModel, level: float = 0.0) -> tuple[Array, Array]:
+    """Return the largest growth Re λ + ζ0 |λ| of all modes (...,), 1/s, and the eigenvalue that has it, rad/s.
 
-    The growth of a root that is neutral within its error is zero.
+    The growth of a root that is neutral within its error is zero. Growth and eigenvalue are NaN at failed points.
     """
     values, error = roots(model, level)
     found = growth(values, level)
@@ -111,7 +111,7 @@ def stability_map(
     parts = []
     for some in _batches(points, max(1, _AT_ONCE // len(values[inner])) * len(values[inner])):
         model = plane(grid_x[some], grid_y[some])
-        parts.append((*_largest_growth(model, level), model.trim.reason, model.trim.warning))
+        parts.append((*largest_growth(model, level), model.trim.reason, model.trim.warning))
     found_there = [np.concatenate(part).reshape(grid[0].shape) for part in zip(*parts, strict=True)]
     largest, value, reason, warning = (part.T if inner else part for part in found_there)
     edges, solves = _crossings(plane, x, y, largest, level)

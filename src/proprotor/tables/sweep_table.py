@@ -106,8 +106,8 @@ class SweepTable:
 
         fit = max(1, (width - _SPEED_WIDTH - 1) // _MODE_WIDTH)
         shown = range(len(self.sweep.mode)) if all_modes else self._of_interest(fit)
-        for start in range(0, max(1, len(shown)), fit):
-            yield from self._table(shown[start : start + fit])
+        for modes in self._side_by_side(shown, width):
+            yield from self._table(modes, width)
         left_out = [str(name) for i, name in enumerate(self.sweep.mode.values) if i not in shown]
         if left_out and not self.failed.all():
             more = f"{len(left_out)} more modes (--all-modes): {', '.join(left_out)}."
@@ -138,30 +138,55 @@ class SweepTable:
         broad = np.isin(self.sweep.mode.values, list(broad_modes(self.sweep)))
         return modes_of_interest(self.sweep, max(count, int(broad.sum())))
 
-    def _table(self, modes: Sequence[int]) -> Iterator[Text]:
+    def _side_by_side(self, shown: Sequence[int], width: int) -> Iterator[list[int]]:
+        """Yield the modes of each table: as many as stand side by side, and none where there is no mode."""
+        table: list[int] = []
+        used = _SPEED_WIDTH + 1
+        for mode in shown:
+            if table and used + self._width(mode) > width:
+                yield table
+                table, used = [], _SPEED_WIDTH + 1
+            table.append(mode)
+            used += self._width(mode)
+        yield table
+
+    def _width(self, mode: int) -> int:
+        """Return the width of the columns of a mode, with the space behind: its name stands on two lines at most."""
+        return max(_MODE_WIDTH, *(len(line) + 1 for line in _on_two_lines(str(self.sweep.mode.values[mode]))))
+
+    def _table(self, modes: Sequence[int], width: int) -> Iterator[Text]:
         from rich.text import Text
 
-        names = [textwrap.wrap(str(self.sweep.mode.values[i]), _MODE_WIDTH - 1) for i in modes]
-        for row in range(max(map(len, names), default=0)):
-            cells = (name[row] if row < len(name) else "" for name in names)
-            line = "".join(f"{cell:>{_MODE_WIDTH - 1}} " for cell in cells)
-            yield Text(" " * (_SPEED_WIDTH + 1) + line, "bold")
-        yield Text(f"{self.unit:>{_SPEED_WIDTH}} " + f"{'/rev':>6}{'%':>7} " * len(modes), "dim")
+        names = [_on_two_lines(str(self.sweep.mode.values[i])) for i in modes]
+        widths = [self._width(mode) for mode in modes]
+        for line in zip(*names, strict=True):
+            cells = "".join(f"{cell:>{wide - 1}} " for cell, wide in zip(line, widths, strict=True))
+            if cells.strip():
+                yield Text(" " * (_SPEED_WIDTH + 1) + cells, "bold")
+        units = "".join(f"{'/rev':>{wide - 8}}{'%':>7} " for wide in widths)
+        yield Text(f"{self.unit:>{_SPEED_WIDTH}} {units}", "dim")
         for point in range(len(self.airspeed)):
-            yield self._row(point, modes)
+            yield from self._failure(point, width) if self.failed[point] else [self._row(point, modes)]
         yield Text("")
+
+    def _failure(self, point: int, width: int) -> Iterator[Text]:
+        """Yield the lines of an airspeed that could not be analysed, with the reason."""
+        from rich.text import Text
+
+        lines = textwrap.wrap(str(self.sweep.reason.values[point]), max(width - _SPEED_WIDTH - 2, _MODE_WIDTH))
+        for place, line in enumerate(lines):
+            speed = f"{self.airspeed[point]:g}" if not place else ""
+            yield Text(f"{speed:>{_SPEED_WIDTH}}").append(f"  {line}", "yellow")
 
     def _row(self, point: int, modes: Sequence[int]) -> Text:
         from rich.text import Text
 
         row = Text(f"{self.airspeed[point]:>{_SPEED_WIDTH}g}")
-        if self.failed[point]:
-            return row.append(f"  {self.sweep.reason.values[point]}", "yellow")
         row.append(marked("", self.sweep.warning.values[point]) or " ", "yellow")
         for mode in modes:
             frequency, damping = self.frequency[point, mode], self.damping[point, mode]
             mark, style = ("*", "bold red") if self.unstable[point, mode] else (" ", "")
-            row.append(f"{frequency:>6.3f}{damping:>7.2f}{mark}", style)
+            row.append(f"{frequency:>{self._width(mode) - 8}.3f}{damping:>7.2f}{mark}", style)
         return row
 
     def verdict(self) -> list[str]:
@@ -216,6 +241,15 @@ class SweepTable:
         """Return `records` as CSV in UTF-8, see `proprotor.tables.csv_text`; empty cells at failed points."""
         records = list(self.records())
         return csv_of(records, list(records[0]), self.sweep.attrs)
+
+
+def _on_two_lines(name: str) -> tuple[str, str]:
+    """Return the name of a mode on two lines, the shorter the better; the upper line is empty where one suffices."""
+    words = name.split()
+    if len(name) < _MODE_WIDTH or len(words) == 1:
+        return "", name
+    ways = [(" ".join(words[:place]), " ".join(words[place:])) for place in range(1, len(words))]
+    return min(ways, key=lambda way: max(map(len, way)))
 
 
 def _plain(entry: Any) -> float | str | None:

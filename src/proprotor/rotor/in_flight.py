@@ -1,0 +1,70 @@
+"""Trim and matrices of rotors without any reservation, in one call of the compiled functions.
+
+A point has reservations if its trim is not found at once, if the bound does not connect the trim with the undeflected
+blade, or if anything makes the trim doubtful. Such a point takes `trim_solver`, which finds out what there is to say.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from proprotor.compiled.plans import Limits, rotors_in_flight
+from proprotor.rotor.airfoil import LINEAR_ALPHA, LINEAR_MACH
+from proprotor.rotor.fused import serves, shapes_of
+from proprotor.rotor.section_loads import BladeSections
+from proprotor.rotor.trim import UNKNOWNS, Trim
+from proprotor.rotor.trim_balance import Balance
+from proprotor.rotor.trim_compiled import blades_of, stage
+from proprotor.rotor.trim_compiled import serves as serves_search
+from proprotor.rotor.trim_reasons import INDUCED_SHARE, LARGEST_ANGLE
+from proprotor.rotor.trim_start import FARTHEST, NO_SPRING
+from proprotor.typing import Array
+
+_MOST = 20  # steps of each stage; a point that takes more takes `trim_solver`
+
+
+class _InFlight(NamedTuple):
+    """Rotors at n points: trim, and M, C, K and B (n, rows, columns), which hold at the points `served` (n,)."""
+
+    served: Array
+    trim: Trim
+    matrices: dict[str, Array]
+
+
+def serves_in_flight(balance: Balance, few: BladeSections) -> bool:
+    """Return whether one call serves these rotors: all airloads of the consistent equations, dynamic or rigid pitch."""
+    options = balance.options
+    usual = serves(options.equation_set) and options.airloads == "full" and options.pitch != "coupling"
+    apart = options.reactionless or options.blades_lag or options.is_tilted
+    return bool(usual and not apart and balance.free and few is balance.sections and serves_search(balance))
+
+
+def find_in_flight(balance: Balance) -> _InFlight:
+    """Return trim and matrices of all points of a balance that has no reservations."""
+    plans, finds_collective = balance.plans, balance.target.finds_collective
+    limits = Limits(
+        angle=LARGEST_ANGLE,
+        from_air=FARTHEST,
+        induced=INDUCED_SHARE,
+        incidence=LINEAR_ALPHA,
+        mach=LINEAR_MACH,
+        no_spring=NO_SPRING,
+        finds_collective=finds_collective,
+        lag_is_free="lag" not in balance.options.locked,
+        sprung=tuple(balance.sprung.tolist()),
+    )
+    stages = stage(balance, _MOST, come_near=True), stage(balance, _MOST, come_near=False)
+    found = rotors_in_flight(plans, balance.points, blades_of(balance), stages, limits, shapes_of(plans))
+    none = np.full(balance.points, "", dtype=object)
+    trim = Trim(
+        **dict(zip(UNKNOWNS, found.state, strict=True)),
+        thrust=found.thrust,
+        torque=found.torque,
+        converged=found.served.copy(),
+        reason=none,
+        warning=none.copy(),
+        iterations=found.iterations,
+    )
+    return _InFlight(found.served, trim, found.matrices)
