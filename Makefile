@@ -57,7 +57,7 @@ validation: .venv/installed  ## Write docs/validation.md and its figures
 audit: .venv/installed  ## Judge every equation of the paper against the derivation; writes docs/audit.md
 	$(BIN)/python -m derive.audit
 
-gallery: .venv/installed  ## Draw the pictures of docs/plots.md
+gallery: .venv/installed  ## Draw the pictures that the code of the pages draws: docs/gallery, docs/pictures, docs/damping.png
 	$(BIN)/python -m benchmarks.gallery
 
 examples: .venv/installed  ## Run the examples, draw their pictures and write their notebooks and page

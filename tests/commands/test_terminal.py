@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from proprotor.case import Case
 from proprotor.commands import waiting
 from proprotor.commands.main import main
 from proprotor.model.configuration import Configuration
@@ -141,7 +140,9 @@ def test_a_wide_terminal_is_used():
 
 def test_the_answer_of_flutter_is_its_last_line_and_with_brief_its_first():
     words = ["flutter", "xv15-uncoupled", "--scan", "300:800:100kt"]  # with airspeeds that fail, and doubts
-    whole, brief = (CliRunner().invoke(main, [*words, *more]).stdout.splitlines() for more in ((), ("--brief",)))
+    whole, brief = (
+        CliRunner().invoke(main, [*words, *more]).stdout.splitlines() for more in ((), ("--brief",))
+    )
     assert whole[-1] == brief[0] and brief[0].startswith("Flutter speed ")
     rest = " ".join(brief[1:])
     assert "? Doubtful" in rest and "Not analysed" in rest and "not read in a source" in rest

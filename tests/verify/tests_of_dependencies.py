@@ -25,11 +25,11 @@ ALL = {
     "proprotor-equations": ("derive/test_equations_alone.py",),
     "psutil": ("project/test_needs.py::test_a_limit_of_a_control_group_counts",),
     "pydantic": ("deck/test_deck.py",),
+    "python-docx": ("report/test_word.py",),
     "rich": ("tables",),
     "salib": ("study/test_sampling.py", "study/test_uncertainty.py"),
     "scipy": ("support/test_matrix_market.py", "exchange/test_matlab_file.py"),
     "tornado": ("explore",),
-    "imageio_ffmpeg": ("plots/test_plots_of_motion.py",),
     "typst": ("report",),
     "xarray": ("stability/test_airspeeds.py", "study/test_mode_damping.py"),
 }
@@ -100,6 +100,7 @@ SHORT = ALL | {
         "deck/test_deck.py::test_a_mistake_is_told_in_one_line",
         "deck/test_deck.py::test_a_deck_that_cannot_be_found",
     ),
+    "python-docx": ("report/test_word.py::test_the_tables_are_those_of_the_document",),
     "rich": (
         "tables/test_sweep_table.py",
         f"{_COMMANDS}::test_what_takes_long_is_announced_on_a_terminal",
@@ -117,7 +118,6 @@ SHORT = ALL | {
         f"{_EXPLORE}::test_the_server_answers_this_machine_alone",
         f"{_EXPLORE}::test_a_port_that_is_taken_is_one_message",
     ),
-    "imageio_ffmpeg": ("plots/test_plots_of_motion.py::test_a_film_has_whole_cycles",),
     "typst": ("report/test_report.py::test_the_pdf_has_the_same_numbers",),
     "xarray": (
         "stability/test_airspeeds.py::test_ranges_lists_quantities_and_labelled_arrays",

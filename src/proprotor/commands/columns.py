@@ -1,8 +1,9 @@
 """Lay out a table within the width of a terminal: what is a number stays whole, and words wrap between words.
 
-A table that fits stands as it is. Else its headings wrap, then its last column, if that is text. A last column of long
-text for which too little room is left stands beneath its rows, over the whole width. Then other columns of text wrap,
-and where that does not suffice, long names, such as a field of a deck, break after a dot, an underscore or a bracket.
+A table that fits stands as it is. Else its headings wrap, then its last column, if that is text. Where too little room
+is left for a last column of long text, what is too long stands beneath its row, over the whole width. Then other
+columns of text wrap, and where that does not suffice, long names, such as a field of a deck, break after a dot, an
+underscore or a bracket.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ _INDENT = 4  # of text that stands beneath a row
 _BREAK = re.compile(r"(?<=[._\]])(?=[^\W\d])")  # between the parts of a long name; a number has none
 
 
-class Laid(NamedTuple):
+class _Laid(NamedTuple):
     """The lines of a table: those of the headings, and those of the rows."""
 
     head: list[str]
@@ -25,7 +26,7 @@ class Laid(NamedTuple):
 
 
 class _Widths(NamedTuple):
-    """The width of each column, whether the last column stands beneath the rows, and whether long names break."""
+    """The width of each column, whether long cells of the last one stand beneath, and whether long names break."""
 
     of_columns: list[int]
     beneath: bool = False
@@ -34,7 +35,7 @@ class _Widths(NamedTuple):
 
 def laid_out(
     columns: Sequence[str], rows: Iterable[Sequence[str]], text: Sequence[str], width: int, narrowest: int
-) -> Laid:
+) -> _Laid:
     """Return the lines of a table, no longer than `width` unless a number or a part of a name needs more.
 
     Parameters
@@ -54,7 +55,7 @@ def laid_out(
     words = [name in text for name in columns]
     found = _widths(table, words, width, narrowest)
     head, *body = (_row(cells, words, found, width, upward=not place) for place, cells in enumerate(table))
-    return Laid(head, [line for lines in body for line in lines])
+    return _Laid(head, [line for lines in body for line in lines])
 
 
 def _widths(table: list[tuple[str, ...]], words: list[bool], width: int, narrowest: int) -> _Widths:
@@ -63,9 +64,7 @@ def _widths(table: list[tuple[str, ...]], words: list[bool], width: int, narrowe
     if _total(whole) <= width:
         return _Widths(whole)
     longest = _longest(table, words, str.split)
-    heads = [
-        max([_of_word(cells[0], str.split), *map(len, cells[1:])]) for cells in zip(*table, strict=True)
-    ]
+    heads = [max([_of_word(cells[0], str.split), *map(len, cells[1:])]) for cells in zip(*table, strict=True)]
     wrapped = _shrunk(whole, heads, width)
     if _total(wrapped) <= width:
         return _Widths(wrapped)
@@ -85,9 +84,7 @@ def _total(widths: Sequence[int]) -> int:
     return sum(widths) + _GAP * (len(widths) - 1)
 
 
-def _longest(
-    table: list[tuple[str, ...]], words: list[bool], split: Callable[[str], list[str]]
-) -> list[int]:
+def _longest(table: list[tuple[str, ...]], words: list[bool], split: Callable[[str], list[str]]) -> list[int]:
     """Return the least width of each column: of text the longest word, of numbers the longest number."""
     return [
         max(_of_word(cell, split if word or not place else _whole) for place, cell in enumerate(cells))
@@ -109,7 +106,7 @@ def _parts(cell: str) -> list[str]:
 
 
 def _shrunk(widths: list[int], least: list[int], width: int) -> list[int]:
-    """Return widths from which the widest columns gave up characters, until the table fits or no column has any left."""
+    """Return widths from which the widest columns gave up characters, until the table fits or none has any left."""
     found = list(widths)
     while _total(found) > width:
         spare = [(wide, place) for place, wide in enumerate(found) if wide > least[place]]
@@ -135,9 +132,15 @@ def _row(cells: tuple[str, ...], words: list[bool], found: _Widths, width: int, 
         [line.ljust(wide) if word else line.rjust(wide) for line in lines]
         for lines, wide, word in zip(filled, found.of_columns, words[:count], strict=True)
     )
-    lines = [(" " * _GAP).join(line).rstrip() for line in zip(*settled, strict=True)]
-    below = _wrapped(cells[-1], max(1, width - _INDENT), broken=found.broken) if found.beneath else []
-    return lines + [f"{'':{_INDENT}}{line}" for line in below if line]
+    lines = [(" " * _GAP).join(line) for line in zip(*settled, strict=True)]
+    below: list[str] = []
+    if found.beneath:
+        place = -1 if upward else 0
+        if _total(found.of_columns) + _GAP + len(cells[-1]) <= width:
+            lines[place] += f"{'':{_GAP}}{cells[-1]}"
+        else:
+            below = _wrapped(cells[-1], max(1, width - _INDENT), broken=found.broken)
+    return [line.rstrip() for line in lines] + [f"{'':{_INDENT}}{line}" for line in below if line]
 
 
 def _wrapped(cell: str, width: int, *, broken: bool) -> list[str]:

@@ -80,7 +80,9 @@ def flutter(
     rows = [record | {"mechanism": mechanism_message(record["mechanism"])} for record in records]
     outputs.write(
         document=lambda: output.about(case, request) | _document(found, records, at),
-        table=lambda: (_print_brief if brief else _print)(case, found, at, arguments.unit_of(scan or speed or "kt")),
+        table=lambda: (_print_brief if brief else _print)(
+            case, found, at, arguments.unit_of(scan or speed or "kt")
+        ),
         csv=lambda: csv_of(rows, COLUMNS, found.stamp),
     )
     output.exit_without(math.isfinite(found.searched[0]))

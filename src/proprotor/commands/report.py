@@ -37,7 +37,9 @@ _SUFFIXES = (".html", ".pdf", ".docx")
 )
 @click.option("--pdf", is_flag=True, help="Write a PDF as well (pip install 'proprotor[report]').")
 @click.option(
-    "--docx", is_flag=True, help="Write a DOCX as well, to go on writing in (pip install 'proprotor[report]')."
+    "--docx",
+    is_flag=True,
+    help="Write a DOCX as well, to go on writing in (pip install 'proprotor[report]').",
 )
 @click.option(
     "--margin-at",

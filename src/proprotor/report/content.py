@@ -120,10 +120,17 @@ def report_document(
         subtitle=f"Case {case.name}, {heading(case).rpartition(', ')[2]}",
         date=date,
         verdict=tuple(verdict(case, found, margin_at, unit, factor)),
-        caution=(*reservations(case), *case.warnings, *table.doubts(), *failures),
+        caution=(*reservations(case), *case.warnings, *_doubts(found, table, unit, factor), *failures),
         summary=tuple(summary(case, found, settings, unit, factor)),
         sections=tuple(section for section in sections if section.blocks),
     )
+
+
+def _doubts(found: Findings, table: SweepTable, unit: str, factor: float) -> Iterator[str]:
+    """Yield a sentence on each doubt at the airspeeds of the plots, and one on a doubtful flutter speed."""
+    yield from (f"{MARK} {doubt}" for doubt in table.doubts())
+    if found.flutters and found.warning:
+        yield f"{MARK} Doubtful {_at(found, unit, factor)}, the flutter speed: {found.warning}."
 
 
 def _failed(table: SweepTable) -> Iterator[tuple[str, str, str]]:

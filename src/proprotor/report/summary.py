@@ -56,6 +56,8 @@ def verdict(case: Case, found: Findings, margin_at: float | None, unit: str, fac
             yield sentence
     if found.envelope is not None:
         yield f"Envelope: {envelope_verdict(found.envelope)}"
+    elif found.no_envelope:
+        yield f"The envelope could not be found: {found.no_envelope}."
     elif margin_at is None and found.flutters:
         yield _NO_MARGIN
     if math.isfinite(flutter.searched[0]):
@@ -91,11 +93,10 @@ def summary(
 
 def _numbers(case: Case, found: Findings, unit: str, factor: float) -> Iterator[Table | Text]:
     """Yield the numbers that follow from the inputs, and the rules that doubtful ones break."""
-    cells, doubts = {}, []
-    for one in amounts(case):
-        if one.name in _OF_ROTOR:
-            cells[_OF_ROTOR[one.name]] = marked(f"{one.value:.3g}", one.doubt)
-            doubts.append(one.doubt)
+    found_amounts = {one.name: one for one in amounts(case)}
+    of_rotor = {head: found_amounts[name] for name, head in _OF_ROTOR.items()}
+    cells = {head: marked(f"{one.value:.3g}", one.doubt) for head, one in of_rotor.items()}
+    doubts = [one.doubt for one in of_rotor.values()]
     where = ""
     for blade in blade_at_trims(case, np.array([found.speed])) if found.mode else ():
         where = f"; tip Mach along the helix, ν and K_P at {found.speed / factor:.4g} {unit}"

@@ -55,8 +55,8 @@ def docx_of(document: Document) -> bytes:
         file.add_paragraph().add_run("What this rests on").bold = True
         for sentence in document.caution:
             _barred(file, sentence, _RED)
-    for block in document.summary:
-        _add(file, block)
+    for part in document.summary:
+        _add(file, part)
     for number, section in enumerate(document.sections):
         heading = file.add_heading(section.title, 1)
         heading.paragraph_format.page_break_before = number == 0
@@ -75,13 +75,22 @@ def _set_up(file: Any, document: Document) -> None:
     section.page_width, section.page_height = Mm(210), Mm(297)
     for side in ("left", "right", "top", "bottom"):
         setattr(section, f"{side}_margin", Mm(_MARGIN))
-    for name, size, after in (("Normal", 10, 3), ("Caption", 9, 3), ("Title", 19, 2), ("Subtitle", 10, 4), ("Footer", 8, 0)):
+    for name, size, after in (
+        ("Normal", 10, 3),
+        ("Caption", 9, 3),
+        ("Title", 19, 2),
+        ("Subtitle", 10, 4),
+        ("Footer", 8, 0),
+    ):
         style = file.styles[name]
         style.font.size, style.paragraph_format.space_after = Pt(size), Pt(after)
     for name in ("Normal", "Title", "Heading 1"):  # the other styles follow these
         _set_font(file.styles[name])
     file.styles["Caption"].paragraph_format.keep_with_next = True
-    properties, moment = file.core_properties, datetime.combine(day.fromisoformat(document.date), time(12), UTC)
+    properties, moment = (
+        file.core_properties,
+        datetime.combine(day.fromisoformat(document.date), time(12), UTC),
+    )
     properties.title, properties.author, properties.comments = document.title, "proprotor", document.subtitle
     properties.created = properties.modified = moment.replace(tzinfo=None)
     foot = section.footer.paragraphs[0]
@@ -125,7 +134,9 @@ def _barred(file: Any, sentence: str, colour: str, *, bold: bool = False) -> Non
     paragraph.paragraph_format.left_indent = Mm(3)
     border = _element("w:pBdr")
     border.append(_element("w:left", val="single", sz="24", space="6", color=colour))
-    paragraph._p.get_or_add_pPr().insert_element_before(border, "w:shd", "w:tabs", "w:spacing", "w:ind", "w:jc")
+    paragraph._p.get_or_add_pPr().insert_element_before(
+        border, "w:shd", "w:tabs", "w:spacing", "w:ind", "w:jc"
+    )
 
 
 def _add_table(file: Any, block: Table) -> None:
@@ -166,13 +177,11 @@ def _widths(block: Table) -> list[float]:
     columns = list(zip(block.columns, *block.rows, strict=True))
     whole = [max(min(_MOST, len(text)) for text in texts) + _BESIDE for texts in columns]
     least = [max(_longest_word(text) for text in texts) + _BESIDE for texts in columns]
-    room = _WIDTH / _CHARACTER
-    if sum(whole) > room:
-        spare = max(0.0, room - sum(least))
-        wanted = sum(whole) - sum(least)
-        whole = [few + spare * (many - few) / wanted for few, many in zip(least, whole, strict=True)]
-    scale = min(_CHARACTER, _WIDTH / sum(whole))
-    return [scale * length for length in whole]
+    wanted, room = sum(whole) - sum(least), _WIDTH / _CHARACTER - sum(least)
+    share = min(1.0, max(0.0, room) / wanted) if wanted else 0.0
+    lengths = [few + share * (many - few) for few, many in zip(least, whole, strict=True)]
+    scale = min(_CHARACTER, _WIDTH / sum(lengths))
+    return [scale * length for length in lengths]
 
 
 def _longest_word(text: str) -> int:
@@ -213,7 +222,10 @@ def _element(name: str, **attributes: str) -> Any:
 def _undated(content: bytes) -> bytes:
     """Return an archive with the same members, none of which has the time at which it was written."""
     found = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(found, "w", zipfile.ZIP_DEFLATED) as new:
+    with (
+        zipfile.ZipFile(io.BytesIO(content)) as old,
+        zipfile.ZipFile(found, "w", zipfile.ZIP_DEFLATED) as new,
+    ):
         for name in old.namelist():
             new.writestr(zipfile.ZipInfo(name, _FIRST_DATE), old.read(name), zipfile.ZIP_DEFLATED)
     return found.getvalue()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -98,7 +98,7 @@ class Options:
         With a shaft angle or a load factor: a swashplate without cyclic pitch, or the cyclic pitch that keeps the
         gimbal level; without a gimbal, the pitch that keeps the blades from flapping once a turn.
     backend : "numpy", "compiled" or "auto"
-        What computes trims, matrices and eigenvalues: NumPy with LAPACK, or compiled functions for whole batches
+        What computes trims, matrices and eigenvalues: NumPy with LAPACK, or compiled functions
         (see `proprotor.compiled`), to rounding the same. "auto" takes these where there is a C compiler, and results
         say which of both it took.
     locked : collection of "flap", "lag", "pitch", "gimbal"
@@ -191,7 +191,7 @@ class Options:
         if self.cyclic == "level" and {"gimbal", "flap"} <= {*self.locked}:
             raise InputError("cyclic", self.cyclic, "needs a gimbal or a flap hinge that is not locked")
 
-    @property
+    @cached_property
     def is_tilted(self) -> bool:
         """Whether the rotor flies at an angle or in a turn, so that its trim is periodic."""
         at_angle = np.any(np.not_equal(self.shaft_angle, 0))

@@ -173,7 +173,9 @@ class SweepTable:
         """Yield the lines of an airspeed that could not be analysed, with the reason."""
         from rich.text import Text
 
-        lines = textwrap.wrap(str(self.sweep.reason.values[point]), max(width - _SPEED_WIDTH - 2, _MODE_WIDTH))
+        lines = textwrap.wrap(
+            str(self.sweep.reason.values[point]), max(width - _SPEED_WIDTH - 2, _MODE_WIDTH)
+        )
         for place, line in enumerate(lines):
             speed = f"{self.airspeed[point]:g}" if not place else ""
             yield Text(f"{speed:>{_SPEED_WIDTH}}").append(f"  {line}", "yellow")
