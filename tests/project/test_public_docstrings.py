@@ -334,6 +334,9 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "sensitivity.sensitivity": lambda case, **more: sensitivity(case, airspeed=SPEEDS, **more),
     "map.stability_map": lambda case, **more: stability_map(case, AXES, **more),
     "sweep.sweep_case": lambda case, **more: sweep_case(case, SPEEDS, **more),
+    "robust_boundary": lambda case, **more: pp.robust_boundary(
+        case, {"rotor.precone": ("1 deg", "2 deg")}, SPEEDS, **more
+    ),
 }
 STATIONS = pp.BladeStations(
     radius=np.array([0.0, 0.5, 1.0]),
