@@ -14,6 +14,7 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
+from proprotor.model.inflow import with_dynamic_inflow, with_tilting_inflow
 from proprotor.model.lift_lag import LaggingBlade, lagging_blade, reactionless_with_lift_lag, with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
@@ -24,7 +25,9 @@ from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.kept import kept
+from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.motions import (
+    INFLOW,
     LAGS_PER_BLADE,
     LIFT,
     MAST_TWIST,
@@ -106,13 +109,14 @@ def model_of(
     target = trim_target(rotor, operation)
     if shape:
         target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-    settled = solve_trim(sections, few, quantities, choice, target, points, one=shape == ())
+    settled = _settled(sections, few, quantities, choice, target, points, one=shape == ())
     reactionless = _reactionless(rotor, choice)
     apart = reactionless_groups(reactionless) if reactionless else []
     lagging: tuple[Coordinate, ...] = ()
     if choice.blades_lag:
         lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
-    coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
+    inflow = INFLOW if choice.inflow_is_dynamic else ()
+    coordinates = (*FIXED, *inflow, *lagging, *(coordinate for group in apart for coordinate in group))
     if choice.is_tilted:
         made = _about_periodic_trim(_Tilted(rotor, choice, target, speed, shape, around), sections, settled)
     else:
@@ -130,7 +134,7 @@ def model_of(
         else made.airspeed,
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
-        rates=tuple(coordinate.name for coordinate in coordinates if coordinate.angle == LIFT),
+        rates=tuple(coordinate.name for coordinate in coordinates if coordinate.angle in (LIFT, "inflow")),
         apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
         swing=made.swing,
     )
@@ -139,6 +143,25 @@ def model_of(
         coordinates = (*coordinates, Coordinate(MAST_TWIST, MAST_TWIST, 0, "", "rad"))
     free = _free_coordinates(choice, coordinates)
     return model if free == model.dofs else model.submodel(free)
+
+
+def _settled(
+    sections: BladeSections,
+    few: BladeSections,
+    quantities: Mapping[str, Any],
+    options: Options,
+    target: Target,
+    points: int,
+    one: bool,
+) -> Settled:
+    """Return the trim of all points, with the induced velocity that the options ask for."""
+
+    def solve(given: Mapping[str, Any], closed_by: Target, one: bool = False) -> Settled:
+        return solve_trim(sections, few, given, options, closed_by, points, one)
+
+    if options.has_inflow:
+        return with_induced(solve, quantities, target, points)
+    return solve(quantities, target, one)
 
 
 class _Made(NamedTuple):
@@ -236,6 +259,8 @@ def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
         count += 3 * (blades - 3)
     if options.blades_lag:
         count += LAGS_PER_BLADE * blades
+    if options.inflow_is_dynamic:
+        count += len(INFLOW)
     if options.reactionless:
         check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
     size = points * (_BYTES_PER_POINT + _BYTES_PER_ENTRY * count**2)
@@ -285,6 +310,8 @@ def _matrices(
             found = fused.rotor_matrices(quantities, in_air, len(rows), one, compiled)
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
+        if options.has_inflow:
+            found = _with_inflow(found, segments, quantities, settled.trim.inflow[rows], options)
         late = None
         if options.blades_lag:
             late = lagging_blade(sections.take(rows), quantities, len(rows), options)
@@ -297,6 +324,20 @@ def _matrices(
         name: _at_all_points(found.get(name), points, rows, (n, columns))
         for name, columns in (dict.fromkeys("MCK", n) | {"B": len(INPUTS)}).items()
     }
+
+
+def _with_inflow(
+    found: dict[str, Array],
+    segments: Mapping[str, Any],
+    quantities: Mapping[str, Any],
+    induced: Array,
+    options: Options,
+) -> dict[str, Array]:
+    """Return M, C, K and B with the induced velocity that the options ask for."""
+    if options.inflow_is_dynamic:
+        through = {"induced_velocity": induced, "axial_flow": quantities["airspeed"]}
+        found = with_dynamic_inflow(found, segments, {**quantities, **through})
+    return with_tilting_inflow(found, induced)
 
 
 def _without_pitch_equations(stiffness: Array, inputs: Array) -> Array:
