@@ -19,6 +19,7 @@ from proprotor.model.lift_lag import padded
 from proprotor.model.linear_model import INPUTS, SWASHPLATE
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.motions import INFLOW
+from proprotor.rotor.options import Options
 from proprotor.typing import Array
 
 _SEEN_FROM_BLADE = [BLADE_COORDINATES.index(name) for name in ("azimuth", "gimbal_flap", "gimbal_roll")]
@@ -26,6 +27,33 @@ _PLACES = [FIXED_COORDINATES.index(name) for name in ("azimuth", "gimbal_1c", "g
 _NOTHING = np.zeros((len(BLADE_COORDINATES),) * 2)
 _AXIAL, _AXIAL_GUST = FIXED_COORDINATES.index("z"), INPUTS.index("gust_z")
 _TILTS = {"alpha_x": ("gust_y", -1.0), "alpha_y": ("gust_x", 1.0)}  # gust against the tilted induced velocity
+
+
+def with_inflow(
+    rotor: Mapping[str, Array],
+    segments: Mapping[str, Any],
+    quantities: Mapping[str, Any],
+    induced: Array,
+    options: Options,
+) -> dict[str, Array]:
+    """Return M, C, K and B of a rotor with the induced velocity that the options ask for.
+
+    Parameters
+    ----------
+    rotor : mapping of str to array
+        M, C, K (points, 18, 18) and B (points, 18, 6) of the rotor at the air through the disk.
+    segments : mapping
+        On which side of the hinges each segment is, and the radial moments of the section loads at trim.
+    quantities : mapping
+        Quantities of the blade at trim by name, numbers or arrays (points,); the airspeed is that through the disk.
+    induced : array (points,)
+        Induced velocity in trim, m/s.
+    options : Options
+    """
+    if options.inflow_is_dynamic:
+        through = {"induced_velocity": induced, "axial_flow": quantities["airspeed"]}
+        rotor = with_dynamic_inflow(rotor, segments, {**quantities, **through})
+    return with_tilting_inflow(rotor, induced)
 
 
 def with_tilting_inflow(rotor: Mapping[str, Array], induced: Any) -> dict[str, Array]:

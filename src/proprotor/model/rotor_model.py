@@ -14,7 +14,7 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
-from proprotor.model.inflow import with_dynamic_inflow, with_tilting_inflow
+from proprotor.model.inflow import with_inflow
 from proprotor.model.lift_lag import LaggingBlade, lagging_blade, reactionless_with_lift_lag, with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
@@ -311,7 +311,7 @@ def _matrices(
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
         if options.has_inflow:
-            found = _with_inflow(found, segments, quantities, settled.trim.inflow[rows], options)
+            found = with_inflow(found, segments, quantities, settled.trim.inflow[rows], options)
         late = None
         if options.blades_lag:
             late = lagging_blade(sections.take(rows), quantities, len(rows), options)
@@ -324,20 +324,6 @@ def _matrices(
         name: _at_all_points(found.get(name), points, rows, (n, columns))
         for name, columns in (dict.fromkeys("MCK", n) | {"B": len(INPUTS)}).items()
     }
-
-
-def _with_inflow(
-    found: dict[str, Array],
-    segments: Mapping[str, Any],
-    quantities: Mapping[str, Any],
-    induced: Array,
-    options: Options,
-) -> dict[str, Array]:
-    """Return M, C, K and B with the induced velocity that the options ask for."""
-    if options.inflow_is_dynamic:
-        through = {"induced_velocity": induced, "axial_flow": quantities["airspeed"]}
-        found = with_dynamic_inflow(found, segments, {**quantities, **through})
-    return with_tilting_inflow(found, induced)
 
 
 def _without_pitch_equations(stiffness: Array, inputs: Array) -> Array:

@@ -87,8 +87,8 @@ class Options:
     inflow : "none", "momentum" or "dynamic"
         Velocity that the rotor's thrust induces, for consistent equations in axial flight: none; by momentum theory in
         the trim, which perturbations leave as it is; or in the trim and with states that follow thrust and hub moments,
-        uniform and of the first harmonics. The latter goes with lift of blades that is quasi-steady: lag and inflow are
-        two models of one wake.
+        uniform and of the first harmonics. Goes with lift of blades that is quasi-steady: lag and inflow are two models
+        of one wake.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
@@ -189,10 +189,10 @@ class Options:
             raise InputError("inflow", self.inflow, "goes with blade frequencies against the collective")
         if self.inflow_is_dynamic and self.airloads == "none":
             raise InputError("inflow", self.inflow, 'goes with airloads="full" or "lift-slope"')
-        if self.inflow_is_dynamic and self.blades_lag:
+        if self.blades_lag:
             rule = (
-                f'goes with lift="quasi-steady" or "lagged-wing": with lift="{self.lift}" a part of the wake would '
-                "count twice"
+                f'goes with lift="quasi-steady" or "lagged-wing", not "{self.lift}": a part of the wake would count '
+                "twice"
             )
             raise InputError("inflow", self.inflow, rule)
 
