@@ -18,10 +18,10 @@ STILL = np.zeros(3)
 
 
 def hub_axes(turn):
-    """Columns I, J, K turned with the hub, for a small turn that is complex as well: Rodrigues to first order and up."""
-    cross = np.array(
-        [[0.0 * turn[0], -turn[2], turn[1]], [turn[2], 0.0 * turn[0], -turn[0]], [-turn[1], turn[0], 0.0 * turn[0]]]
-    )
+    """Columns I, J, K (..., 3, 3) turned with the hub, to second order in the turn: all that derivatives see."""
+    x, y, z = np.moveaxis(turn, -1, 0)
+    none = 0 * x
+    cross = np.stack([none, -z, y, z, none, -x, -y, x, none], axis=-1).reshape(*np.shape(x), 3, 3)
     return np.eye(3) + cross + cross @ cross / 2
 
 
