@@ -156,12 +156,9 @@ def _settled(
 ) -> Settled:
     """Return the trim of all points, with the induced velocity that the options ask for."""
 
-    def solve(given: Mapping[str, Any], closed_by: Target, one: bool = False) -> Settled:
-        return solve_trim(sections, few, given, options, closed_by, points, one)
-
     if options.has_inflow:
-        return with_induced(solve, quantities, target, points)
-    return solve(quantities, target, one)
+        return with_induced(sections, few, quantities, options, target, points)
+    return solve_trim(sections, few, quantities, options, target, points, one)
 
 
 class _Made(NamedTuple):

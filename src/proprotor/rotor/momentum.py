@@ -11,7 +11,7 @@ that is zero without thrust has V + 2λ > 0. Each point stops by itself, whateve
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,12 +19,13 @@ import numpy as np
 from proprotor_equations import inflow
 
 from proprotor.rotor.generated import evaluate
+from proprotor.rotor.options import Options
+from proprotor.rotor.section_loads import BladeSections
 from proprotor.rotor.trim import THRUST, Target
 from proprotor.rotor.trim_balance import is_last
-from proprotor.rotor.trim_solver import Settled
+from proprotor.rotor.trim_solver import Settled, solve_trim
 from proprotor.typing import Array
 
-Solve = Callable[[Mapping[str, Any], Target], Settled]
 _ITERATIONS = 30
 _STEP = 1e-30  # of the complex step, m/s
 NO_FLOW = (
@@ -34,34 +35,31 @@ NO_FLOW = (
 _NOT_FOUND = "no trim with induced velocity found: Newton did not converge"
 
 
-def with_induced(solve: Solve, quantities: Mapping[str, Any], target: Target, points: int) -> Settled:
+def with_induced(
+    sections: BladeSections,
+    few: BladeSections,
+    quantities: Mapping[str, Any],
+    options: Options,
+    target: Target,
+    points: int,
+) -> Settled:
     """Return the trim with induced velocity, whose quantities have the air through the disk as the airspeed.
 
     Parameters
     ----------
-    solve : callable
-        Returns the trim without induced velocity from quantities and target.
-    quantities : mapping
-        Numbers or arrays (points,) by name, as for `proprotor.rotor.trim_solver.solve_trim`. Complex numbers have small
-        imaginary parts: the trim is exact to first order in these parts.
-    target : Target
-    points : int
+    sections, few, quantities, options, target, points
+        As for `proprotor.rotor.trim_solver.solve_trim`. Complex numbers have small imaginary parts: the trim is exact
+        to first order in these parts.
 
     Returns
     -------
     Settled
         With `trim.inflow`; points without a root of momentum theory have failed.
     """
-    collective = None if target.collective is None else np.real(target.collective)
-    real = _Rotor(
-        solve,
-        {name: np.real(value) for name, value in quantities.items()},
-        replace(target, collective=collective, load=np.real(target.load)),
-        points,
-    )
+    whole = _Rotor(sections, few, quantities, options, target, points)
+    real = whole.real
     induced, reason = real.induced()
-    whole = _Rotor(solve, quantities, target, points)
-    if any(map(np.iscomplexobj, (*quantities.values(), target.collective, target.load))):
+    if whole.is_complex:
         _, slope, _ = real.left(induced)
         left, *_ = whole.left(induced, slope=False)
         induced = induced - 1j * left.imag / slope
@@ -75,10 +73,31 @@ def with_induced(solve: Solve, quantities: Mapping[str, Any], target: Target, po
 class _Rotor:
     """What is known of all points before the search."""
 
-    solve: Solve
+    sections: BladeSections
+    few: BladeSections
     quantities: Mapping[str, Any]
+    options: Options
     target: Target
     points: int
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether any number has an imaginary part."""
+        numbers = (*self.quantities.values(), self.target.collective, self.target.load)
+        return self.sections.is_complex or any(map(np.iscomplexobj, numbers))
+
+    @property
+    def real(self) -> _Rotor:
+        """The same without imaginary parts."""
+        collective = None if self.target.collective is None else np.real(self.target.collective)
+        sections = self.sections.real
+        return replace(
+            self,
+            sections=sections,
+            few=sections if self.few is self.sections else self.few.real,
+            quantities={name: np.real(value) for name, value in self.quantities.items()},
+            target=replace(self.target, collective=collective, load=np.real(self.target.load)),
+        )
 
     def induced(self) -> tuple[Array, Array]:
         """Return the induced velocity (points,) and reasons of the points that have none, empty for the others."""
@@ -117,7 +136,8 @@ class _Rotor:
     def trimmed(self, induced: Array) -> Settled:
         """Return the trim with the air through the disk as the airspeed."""
         through = self.quantities["airspeed"] + induced
-        return self.solve({**self.quantities, "airspeed": through}, self.target)
+        given = {**self.quantities, "airspeed": through}
+        return solve_trim(self.sections, self.few, given, self.options, self.target, self.points)
 
     def _momentum(self, induced: Array) -> Any:
         through = self.quantities["airspeed"] + induced
