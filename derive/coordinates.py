@@ -108,7 +108,9 @@ INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 
 # Induced velocity through the disk: uniform, and growing with the distance from the diameter about which it turns over.
 # A blade sees the latter two as it sees the flap and the roll of a gimbal.
-BLADE_INFLOW = tuple(Coordinate(f"inflow_{part}", "m/s", "inflow") for part in ("uniform", "outward", "aside"))
+BLADE_INFLOW = tuple(
+    Coordinate(f"inflow_{part}", "m/s", "inflow") for part in ("uniform", "outward", "aside")
+)
 FIXED_INFLOW = (
     Coordinate("inflow_0", "m/s", "inflow"),
     *(Coordinate(f"inflow_1{part}", "m/s", "inflow", 1, part) for part in "cs"),

@@ -197,7 +197,9 @@ INFLOW = (
     values("momentum", inflow.momentum, THROUGH_DISK),
     inflow_work("virtual_motion", inflow.virtual_motion, SEEN_FROM_DISK),
     motion_matrix("motion", inflow.motion, SEEN_FROM_DISK, names(BLADE_INFLOW)),
-    inflow_stiffness("geometric_stiffness", inflow.geometric_stiffness, f"{STEADY_LOADS}, seen from the disk"),
+    inflow_stiffness(
+        "geometric_stiffness", inflow.geometric_stiffness, f"{STEADY_LOADS}, seen from the disk"
+    ),
 )
 LIFT_SLOPE = (values("load_moments", lift_slope.load_moments, CLOSED, MOMENTS),)
 TRIM = (
@@ -281,7 +283,9 @@ STEPS = {
         Step("section", "Loads of a blade section", SECTION),
         Step("airloads", "Airloads of one blade, segment by segment", AIRLOADS),
         Step("lift_lag", "Lag of lift, in shape functions along the blade", LIFT_LAG),
-        Step("inflow", "Dynamic inflow in axial flight: momentum, and what a blade has to do with it", INFLOW),
+        Step(
+            "inflow", "Dynamic inflow in axial flight: momentum, and what a blade has to do with it", INFLOW
+        ),
         Step("lift_slope", "Lift-slope airloads of the published set in closed form", LIFT_SLOPE),
         Step("trim", "Trim balance of one blade", TRIM),
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),

@@ -32,7 +32,12 @@ def checks() -> Iterator[Check]:
 
 def _momentum() -> Check:
     """Thrust of a stream tube and its derivatives by complex steps, and the masses of air around a disk."""
-    density, radius, airspeed, induced = np.array([1.1, 0.7]), np.array([3.8, 2.0]), 90.0, np.array([4.0, -3.0])
+    density, radius, airspeed, induced = (
+        np.array([1.1, 0.7]),
+        np.array([3.8, 2.0]),
+        90.0,
+        np.array([4.0, -3.0]),
+    )
     area = np.pi * radius**2
 
     def thrust(speed: Any, inflow: Any) -> Any:
@@ -46,7 +51,12 @@ def _momentum() -> Check:
         "uniform_apparent_mass": 8 / (3 * np.pi) * density * area * radius,
         "harmonic_apparent_mass": 16 / (45 * np.pi) * density * area * radius,
     }
-    given = {"density": density, "radius": radius, "axial_flow": airspeed + induced, "induced_velocity": induced}
+    given = {
+        "density": density,
+        "radius": radius,
+        "axial_flow": airspeed + induced,
+        "induced_velocity": induced,
+    }
     return values_check(("inflow", "momentum"), "a stream tube, and air around a disk", given, expected)
 
 
@@ -109,7 +119,8 @@ def _loads(point: Point) -> NDArray:
     """Loads (12, 3) on the blade by the inflow, on the left, in rotating axes."""
     places = [DOFS.index(name) for name in ONE_BLADE]
     columns = [
-        one_blade.airload_rows(point, point.rotor, Motion(point.trim), 0.0, -1j * STEP * field)[places].imag / STEP
+        one_blade.airload_rows(point, point.rotor, Motion(point.trim), 0.0, -1j * STEP * field)[places].imag
+        / STEP
         for field in _fields(point)
     ]
     return np.linalg.inv(seen_from_blade(ONE_BLADE, 0.0)[0]).T @ np.array(columns).T

@@ -52,7 +52,9 @@ def by_momentum(air, field, steady, speed):
     """Thrust, and moments over the radius, that the air takes for an inflow which stays as it is."""
     area, whole = np.pi * air.radius**2, steady + field[0]
     mean = air.airspeed + steady
-    return np.array([2 * air.density * area * whole * (speed + whole), *(air.density * area / 2 * mean * field[1:])])
+    return np.array(
+        [2 * air.density * area * whole * (speed + whole), *(air.density * area / 2 * mean * field[1:])]
+    )
 
 
 def apparent_masses(air):

@@ -52,11 +52,11 @@ def with_inflow(
     """
     if options.inflow_is_dynamic:
         through = {"induced_velocity": induced, "axial_flow": quantities["airspeed"]}
-        rotor = with_dynamic_inflow(rotor, segments, {**quantities, **through})
-    return with_tilting_inflow(rotor, induced)
+        rotor = _with_states(rotor, segments, {**quantities, **through})
+    return _with_tilt(rotor, induced)
 
 
-def with_tilting_inflow(rotor: Mapping[str, Array], induced: Any) -> dict[str, Array]:
+def _with_tilt(rotor: Mapping[str, Array], induced: Any) -> dict[str, Array]:
     """Return M, C, K and B of a rotor whose steady induced velocity tilts with the hub.
 
     Parameters
@@ -73,7 +73,7 @@ def with_tilting_inflow(rotor: Mapping[str, Array], induced: Any) -> dict[str, A
     return {**rotor, "K": stiffness}
 
 
-def with_dynamic_inflow(
+def _with_states(
     rotor: Mapping[str, Array], segments: Mapping[str, Any], quantities: Mapping[str, Any]
 ) -> dict[str, Array]:
     """Return M, C, K and B of a rotor with the states of the inflow added.

@@ -50,6 +50,7 @@ Loads and trim:
     trim_reasons         reasons and warnings
     trim_of_one          Newton's method for one point, by plain numbers
     trim_solver          Newton's method for all points
+    momentum             the trim with induced velocity by momentum theory
 
 A rotor at an angle to its flight, or in a pull-up:
     around_the_turn      periodic functions at equal steps of azimuth
@@ -69,6 +70,7 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
+from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
@@ -115,6 +117,7 @@ __all__ = [
     "solve_trim",
     "standard_air",
     "trim_target",
+    "with_induced",
     "with_trim",
     "write_c81",
 ]

@@ -28,7 +28,7 @@ from proprotor.typing import Array
 
 _ITERATIONS = 30
 _STEP = 1e-30  # of the complex step, m/s
-NO_FLOW = (
+_NO_FLOW = (
     "momentum theory has no induced velocity for this thrust: the mass flow V + λ of the harmonics or V + 2λ of the "
     "uniform inflow would not be positive"
 )
@@ -115,7 +115,7 @@ class _Rotor:
                 step = np.where((failed != "") | (left == 0), 0.0, left / slope)
                 found[going] -= step
                 flows = ~unknown[going] & (airspeed[going] + 2 * found[going] > 0)
-                reason[going] = np.where((failed == "") & ~flows, NO_FLOW, failed)
+                reason[going] = np.where((failed == "") & ~flows, _NO_FLOW, failed)
                 share = np.abs(step) / size[going]
                 done = is_last(share, before[going]) | (reason[going] != "")
                 before[going] = share
@@ -141,7 +141,9 @@ class _Rotor:
 
     def _momentum(self, induced: Array) -> Any:
         through = self.quantities["airspeed"] + induced
-        return evaluate(inflow.momentum, {**self.quantities, "induced_velocity": induced, "axial_flow": through})
+        return evaluate(
+            inflow.momentum, {**self.quantities, "induced_velocity": induced, "axial_flow": through}
+        )
 
     def _first_guess(self) -> Array:
         """Return the root of momentum theory for the thrust that is asked for, or that is there without inflow.

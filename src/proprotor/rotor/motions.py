@@ -18,7 +18,11 @@ ROTOR_SPEED = (
 )
 MAST_TWIST = "mast twist"
 HALVES = ("symmetric", "antisymmetric")  # of the motion of an aircraft with two mirrored rotors
-_NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning", "inflow_0": "uniform inflow"}  # of the modes of single coordinates
+_NAMES = {
+    ROTOR_SPEED: "rotor speed",
+    "flap_0": "coning",
+    "inflow_0": "uniform inflow",
+}  # of the modes of single coordinates
 _PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
 # Coordinates whose rates are induced velocity, in m/s.
