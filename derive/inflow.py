@@ -1,7 +1,7 @@
 """Dynamic inflow in axial flight: induced velocity that follows the loads of the rotor late, as air has mass.
 
-The induced velocity runs through the disk against the thrust, along the hub's axis k, and tilts with the hub. At a point
-p of the disk, seen from the hub, it is
+The induced velocity runs through the disk against the thrust, along the hub's axis k, and tilts with the hub. At a
+point p of the disk, seen from the hub, it is
 
     nu = nu_0 + (nu_1c x + nu_1s y) / R        x = p . I, y = p . J
 
@@ -11,10 +11,11 @@ same three functions of the disk, which are the thrust and the moments of these 
     8/3 rho R³ nu_0' + 2 rho pi R² (V + 2 lambda) nu_0 + 2 rho pi R² lambda v = T
     16/45 rho R³ nu_1' + 1/2 rho pi R² (V + lambda) nu_1 = M / R
 
-Primes are rates of perturbations. lambda is the steady induced velocity, by momentum T = 2 rho pi R² lambda (V + lambda),
-of which the first equation has the derivatives: with lambda, and with the speed v of hub against air along k. The
-masses are those of an impermeable disk that is pushed or turned in still air (Tuckerman, NACA Report 210), and the
-harmonics have half the mass flow, as in D. M. Pitt and D. A. Peters, Vertica 5 (1981), in axial flow.
+nu are changes from trim, primes their rates. lambda is the steady induced velocity, by momentum
+T = 2 rho pi R² lambda (V + lambda), of which the first equation has the derivatives: with lambda, and with the speed v
+of the hub against the air along k. The masses are those of air around an impermeable disk that is pushed or turned
+(H. Lamb, Hydrodynamics, art. 108), which P. J. Carpenter and B. Fridovich (NACA TN 3044, 1953) took for a rotor, and
+both equations are those of D. M. Pitt and D. A. Peters, Vertica 5 (1981), in axial flow.
 """
 
 from __future__ import annotations
