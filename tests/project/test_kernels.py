@@ -14,30 +14,46 @@ def test_the_numerical_tests_are_there():
 
 @pytest.fixture
 def told(monkeypatch):
-    """Commands that would run, with the kernel that each asks for; the second kernel is one the processor lacks."""
+    """Commands that would run, with the kernel that each asks for.
+
+    The first kernel is the one that the processor takes of itself; the second is one that it lacks.
+    """
     asked = []
 
     def run(command, *, env, **_):
         asked.append((env["OPENBLAS_CORETYPE"], command))
         return subprocess.CompletedProcess(command, int(env["OPENBLAS_CORETYPE"] == kernels.KERNELS[2]))
 
-    lacking = kernels.KERNELS[1]
-    monkeypatch.setattr(kernels, "core_in_force", lambda kernel: "Other" if kernel == lacking else kernel)
+    own, lacking = kernels.KERNELS[:2]
+
+    def core_in_force(kernel=None):
+        return "Other" if kernel == lacking else kernel or own
+
+    monkeypatch.setattr(kernels, "core_in_force", core_in_force)
     monkeypatch.setattr(kernels.subprocess, "run", run)
     return asked
 
 
-def test_a_kernel_that_is_lacking_is_told_and_one_that_fails_fails(told, capsys):
+def test_the_own_kernel_and_one_that_is_lacking_are_passed_over_and_one_that_fails_fails(told, capsys):
     assert kernels.main(["-n", "0"]) == 1
-    first, lacking, failing, last = kernels.KERNELS
-    assert [kernel for kernel, _ in told] == [first, failing, last]
+    own, lacking, failing, last = kernels.KERNELS
+    assert [kernel for kernel, _ in told] == [failing, last]
     assert all(
         "tests/stability/test_golden.py" in command and command[-2:] == ["-n", "0"] for _, command in told
     )
     printed = capsys.readouterr().out
     assert f"{lacking}: passed over, as this processor or OpenBLAS has Other in its place" in printed
-    assert printed.endswith(f"under {first}, {failing}, {last}; failed under {failing}\n")
+    assert f"{own}: passed over, as `make test` runs under it" in printed
+    assert printed.endswith(f"under {failing}, {last}; failed under {failing}\n")
 
 
 def test_a_kernel_that_nobody_has_is_not_in_force():
     assert kernels.core_in_force("NoSuchKernel") != "NoSuchKernel"
+
+
+def test_the_own_kernel_is_that_of_a_process_that_asks_for_none(monkeypatch):
+    monkeypatch.delenv("OPENBLAS_CORETYPE", raising=False)
+    own = kernels.core_in_force()
+    assert kernels.core_in_force("NoSuchKernel") == own
+    monkeypatch.setenv("OPENBLAS_CORETYPE", "Nehalem")
+    assert kernels.core_in_force() == kernels.core_in_force("Nehalem")

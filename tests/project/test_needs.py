@@ -333,7 +333,7 @@ LARGE = {
     "against": lambda: CASE.boundary_against({PRECONE: np.linspace(0.01, 0.05, 10**6)}, "1:400:1e-2kt"),
     "values of an input": lambda: CASE.sweep(100.0, {"rotor.blade_mass": FAR}),
     "workers": lambda: pp.study(CASE, {PRECONE: FAR[:200_000]}, 100.0, workers=200_000),
-    "batch": lambda: pp.study(CASE, pp.sampling.points({PRECONE: FAR[: 10**7]}), 100.0, batch=10**7),
+    "batch": lambda: pp.study(CASE, pp.sampling.points({PRECONE: FAR[: 10**6]}), 100.0, batch=10**6),
     "frames": lambda: animate_mode(MOTION, "x.gif", frames=TRILLION),
     "dpi": lambda: animate_mode(MOTION, "x.gif", dpi=10**7),
     "frequencies": lambda: frequency_response(MODEL, FAR[: 10**8]),
