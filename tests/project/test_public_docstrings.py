@@ -247,7 +247,7 @@ GENERATED = generated_functions()
 
 UNIT_OR_SHAPE = re.compile(r"^\[[^\]]+\] |\(\.\.\., [\w, ]+\)")
 SOURCE = re.compile(
-    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads)",
+    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads|momentum theory)",
     re.DOTALL,
 )
 
