@@ -82,7 +82,9 @@ BESIDE_LINE = "mass beside the pitch axis, which AIAA-2002-1604 has not; positio
 BESIDE = f"{STRIP_THEORY}, at an aerodynamic centre beside the pitch axis"
 LATE = "strip theory whose circulation lags by Jones' approximation of Wagner's function, NACA Report 681"
 THROUGH_DISK = "momentum theory; Pitt and Peters, Vertica 5 (1981), in axial flow"
-SEEN_FROM_DISK = f"{STRIP}, induced velocity by the functions of the disk of Pitt and Peters, Vertica 5 (1981)"
+SEEN_FROM_DISK = (
+    f"{STRIP}, induced velocity by the functions of the disk of Pitt and Peters, Vertica 5 (1981)"
+)
 CLOSED = (
     "u_T = Omega r and u_P = V, constant chord, no compressibility, as NASA TN D-7677; valid down to V = 0"
 )
