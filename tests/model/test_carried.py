@@ -267,6 +267,7 @@ OTHERWISE = {
     "compressibility": False,
     "section_damping": False,
     "lift": "lagged",
+    "inflow": "dynamic",
     "rotor_speed": "constant",
     "reactionless": True,
     "backend": "compiled",

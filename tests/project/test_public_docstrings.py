@@ -248,7 +248,8 @@ GENERATED = generated_functions()
 
 UNIT_OR_SHAPE = re.compile(r"^\[[^\]]+\] |\(\.\.\., [\w, ]+\)")
 SOURCE = re.compile(
-    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads)",
+    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads"
+    r"|momentum theory)",
     re.DOTALL,
 )
 
