@@ -34,10 +34,11 @@ regenerate-equations: .venv/installed  ## Derive the equations again, write gene
 	$(BIN)/python -m derive.pages.index
 	$(BIN)/python -m derive.pages.glossary
 
-lint: .venv/installed  ## Check the style of the source
+lint: .venv/installed  ## Check style and spelling
 	$(BIN)/ruff check src derive tests benchmarks notebooks docs
 	$(BIN)/ruff check --preview --select PLW1514 src derive tests benchmarks notebooks docs  # text files have an encoding
 	$(BIN)/ruff format --check src derive tests benchmarks notebooks docs
+	$(BIN)/codespell README.md CHANGELOG.md Makefile src derive templates benchmarks notebooks docs  # tests misspell on purpose
 	$(BIN)/python -m tests.rooms
 
 notebooks: .venv/installed  ## Run the audit's notebooks and render them into docs/notebooks/
@@ -48,6 +49,9 @@ lab: .venv/installed  ## Open the audit's notebooks in JupyterLab, to change a c
 	$(BIN)/python -m pip install --group lab
 	PYTHONPATH="$(CURDIR)" $(BIN)/python -m jupyter lab notebooks
 
+drawings: .venv/installed  ## Draw axes, hinges, gimbal and swashplate from the derivation into docs/figures/
+	$(BIN)/python -m derive.pages.drawings
+
 figures: .venv/installed  ## Make every analytical figure of the paper, with its numbers, in figures/
 	$(BIN)/python -m benchmarks.paper_figures --out figures
 
@@ -57,7 +61,7 @@ validation: .venv/installed  ## Write docs/validation.md and its figures
 audit: .venv/installed  ## Judge every equation of the paper against the derivation; writes docs/audit.md
 	$(BIN)/python -m derive.audit
 
-gallery: .venv/installed  ## Draw the pictures of docs/plots.md
+gallery: .venv/installed  ## Draw the pictures that the code of the pages draws: docs/gallery, docs/pictures, docs/damping.png
 	$(BIN)/python -m benchmarks.gallery
 
 examples: .venv/installed  ## Run the examples, draw their pictures and write their notebooks and page
@@ -106,7 +110,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test test-browser test-languages verify verify-versions verify-environments regenerate-equations lint audit notebooks lab figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
+.PHONY: demo test test-browser test-languages verify verify-versions verify-environments regenerate-equations lint audit notebooks lab drawings figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml generated/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

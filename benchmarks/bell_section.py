@@ -153,7 +153,7 @@ def _points_of(points: Points, name: str) -> Points:
         path: Column(column.values[own], column.low[own], column.high[own], column.head)
         for path, column in points.columns.items()
     }
-    return Points(points.name, columns, points.label[own], points.source[own])
+    return Points(points.name, columns, points.label[own], points.source[own], points.mode[own])
 
 
 if __name__ == "__main__":

@@ -3,8 +3,8 @@
 OPENBLAS_NUM_THREADS=1 python -m benchmarks.explore [--moves 200] [--backend compiled] [--case xv15] [--points 60]
 
 Processor time, which other programs on the machine do not count in; the browser draws on another core
-(`benchmarks.explore_browser`). Sliders are moved at random, one at a time, and stay where they are. Moves to what is not
-physical are counted, and not timed. Memory is that of the whole process.
+(`benchmarks.explore_browser`). Sliders are moved at random, one at a time, and stay where they are. Moves to what is
+not physical are counted, and not timed. Memory is that of the whole process.
 """
 
 from __future__ import annotations
@@ -88,9 +88,8 @@ def main() -> None:
     page.map.grid.value = given.grid
     spent, sizes, refused = timed_moves(page, given.moves)
     done = len(spent["map"])
-    print(
-        f"{given.case}, {given.backend}: {done} moves, {given.points} airspeeds, {given.grid} map, {refused} not physical"
-    )
+    what = f"{given.points} airspeeds, {given.grid} map"
+    print(f"{given.case}, {given.backend}: {done} moves, {what}, {refused} not physical")
     print(f"{'':<16}{'median':>8}{'95 %':>8}  ms of processor time")
     for stage, times in spent.items():
         print(f"{stage:<16}{np.median(times):>8.1f}{np.percentile(times, 95):>8.1f}")

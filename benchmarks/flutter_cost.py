@@ -79,7 +79,7 @@ PROGRAMS = {
     **{name: ANALYSIS.format(call=call) for name, call in CALLS.items()},
 }
 SPEEDS = np.linspace(160, 380, 20) * KNOT
-DESIGNS = 200
+DESIGNS = 500
 
 
 def crossings(console: Console, case: pp.Case) -> None:

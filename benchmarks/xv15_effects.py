@@ -1,17 +1,20 @@
-"""What blade data, linkages and lag of lift are worth on the XV-15: the semispan wing and the aircraft, in knots.
+"""What blade data, places on the chord, linkages, lag of lift and inflow are worth on the XV-15, in knots.
 
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.xv15_effects
 
-Each row changes one thing of the decks xv15 and xv15-aircraft, and tells the first boundary and how far it is from that
-of the deck as it is. Airfoils are those of the deck xv15-sections. The blade of stations is the hinged blade nearest to
-the one of benchmarks.xv15_blade, with bending stiffness calibrated to Bell's first modes. Linkages and the stiffness of
-a swashplate that tilts are assumed: nothing published tells them apart.
+Each row changes one thing of the decks xv15, a semispan wing, and xv15-aircraft, and tells the first boundary and how
+far it is from that of the deck as it is. Airfoils are those of the deck xv15-sections. The blade of stations is the
+hinged blade nearest to the one of benchmarks.xv15_blade, with bending stiffness calibrated to Bell's first modes.
+Linkages and the stiffness of a swashplate that tilts are assumed: nothing published tells them apart. Places on the
+chord are those of benchmarks.offsets, with the mass by stations that they need.
 """
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +22,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks import offsets
 from benchmarks import xv15_blade as stations
 from benchmarks.bell_points import CONFIGURATIONS, SCAN, SYMMETRIES
 from benchmarks.xv15_sections import CHANGES, settings
@@ -31,26 +35,39 @@ LAGS = {
     "lag of lift, wing": "lagged-wing",
     "lag of lift, both": "lagged",
 }
+INFLOWS = {"induced velocity in the trim": "momentum", "dynamic inflow": "dynamic"}
 
 
 class Effect(NamedTuple):
     """One change: fields of the deck that it sets, fields of the rotor that it replaces, and options.
 
     tilt : stiffness of a swashplate that tilts, as a share of the deck's control stiffness.
+    places : quarter chord as published or on the axis, and the centre of gravity, as in benchmarks.offsets.
     """
 
     fields: Mapping[str, str] = {}
     rotor: Mapping[str, float] = {}
     options: Mapping[str, Any] = {}
     tilt: float | None = None
+    places: tuple[bool, float | None] | None = None
 
     def case(self, deck: str) -> pp.Case:
         """Return a deck with the change."""
+        if self.places is not None:
+            return with_places(deck, *self.places)
         case = pp.load_case(deck, dict(self.fields))
         changed = dict(self.rotor)
         if self.tilt is not None:
             changed["cyclic_control_stiffness"] = self.tilt * float(case.rotor.control_stiffness)
         return replace(case, rotor=replace(case.rotor, **changed)) if changed else case
+
+
+def with_places(deck: str, published: bool, aft: float | None) -> pp.Case:
+    """Return a deck with its mass by stations and with places on the chord."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "offsets.toml"
+        path.write_text(offsets.deck(deck, published, aft), encoding="utf-8")
+        return pp.load_case(path)
 
 
 def effects(blade: HingedBlade) -> Iterator[tuple[str, Effect]]:
@@ -64,6 +81,8 @@ def effects(blade: HingedBlade) -> Iterator[tuple[str, Effect]]:
         if not name.startswith("deck"):
             field = {"rotor.control_stiffness": f"{value!r} ft*lbf/rad"}
             yield f"K_θ {value:,.0f} ft lbf/rad: {name}", Effect(field)
+    for name, places in offsets.CHANGES.items():
+        yield f"mass by stations, {name}", Effect(places=places)
     for name, times in (("half", 0.5), ("twice", 2.0)):
         yield f"swashplate that tilts {name} as stiff", Effect(tilt=times)
     for angle in (15, -15):
@@ -74,6 +93,8 @@ def effects(blade: HingedBlade) -> Iterator[tuple[str, Effect]]:
         yield f"K_P4 = {coupling} of the lag hinge", Effect(field)
     for name, lift in LAGS.items():
         yield name, Effect(options={"lift": lift})
+    for name, inflow in INFLOWS.items():
+        yield name, Effect(options={"inflow": inflow})
 
 
 def semispan(effect: Effect) -> tuple[float, str]:

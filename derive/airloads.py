@@ -214,7 +214,7 @@ def segment_kinematics(dropped: frozenset[str] = CONSISTENT) -> SegmentKinematic
     return SegmentKinematics(dropped)
 
 
-def _power(kinematics: SegmentKinematics, polynomial: PolyElement, power: int) -> sp.Expr:
+def power_of_radius(kinematics: SegmentKinematics, polynomial: PolyElement, power: int) -> sp.Expr:
     """Coefficient of r^power, reduced."""
     ring = kinematics.ring
     place = ring.generators.index(s.radial_station)
@@ -245,13 +245,13 @@ def virtual_motion(load: str, row: str, dropped: frozenset[str] = CONSISTENT) ->
     kinematics = segment_kinematics(dropped)
     of = LOAD[load]
     work = kinematics.work_displacement(of.axis, row) if of.axis else kinematics.work_rotation(row)
-    return _power(kinematics, work, of.power)
+    return power_of_radius(kinematics, work, of.power)
 
 
 def _motion(
     kinematics: SegmentKinematics, velocity: Callable[..., PolyElement], motion: str, *along: str
 ) -> sp.Expr:
-    return _power(kinematics, velocity(MOTION[motion].axis, *along), MOTION[motion].power)
+    return power_of_radius(kinematics, velocity(MOTION[motion].axis, *along), MOTION[motion].power)
 
 
 def rate_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
@@ -260,7 +260,7 @@ def rate_motion(motion: str, name: str, dropped: frozenset[str] = CONSISTENT) ->
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
     if motion == "spin":
-        return _power(kinematics, kinematics.work_rotation(name), 0)
+        return power_of_radius(kinematics, kinematics.work_rotation(name), 0)
     return _motion(kinematics, kinematics.rate_velocity, motion, name)
 
 
@@ -270,9 +270,9 @@ def displacement_motion(motion: str, name: str, dropped: frozenset[str] = CONSIS
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
     if motion == "theta":
-        return _power(kinematics, kinematics.pitch_change(name), 0)
+        return power_of_radius(kinematics, kinematics.pitch_change(name), 0)
     if motion == "spin":
-        return _power(kinematics, kinematics.spin(name), 0)
+        return power_of_radius(kinematics, kinematics.spin(name), 0)
     return _motion(kinematics, kinematics.velocity, motion, name)
 
 
@@ -283,14 +283,14 @@ def gust_motion(motion: str, gust: str, dropped: frozenset[str] = CONSISTENT) ->
         return sp.Integer(0)
     kinematics = segment_kinematics(dropped)
     component = kinematics.axes[axis].along()[BLADE_GUSTS.index(COORDINATE[gust])]
-    return _power(kinematics, -SENSE[axis] * component, 0)
+    return power_of_radius(kinematics, -SENSE[axis] * component, 0)
 
 
 def trim_velocity(motion: str, _: str = "trim", dropped: frozenset[str] = CONSISTENT) -> sp.Expr:
     """Trim velocity of the air at r = 0 and per unit radius, along a segment, and the sections' rotation."""
     kinematics = segment_kinematics(dropped)
     if motion == "spin":
-        return _power(kinematics, kinematics.spin(), 0)
+        return power_of_radius(kinematics, kinematics.spin(), 0)
     return _motion(kinematics, kinematics.velocity, motion)
 
 
@@ -303,7 +303,7 @@ def geometric_stiffness(row: str, name: str, dropped: frozenset[str] = CONSISTEN
     changes["m"] = kinematics.work_rotation(row, name)
     return sum(
         (
-            MOMENTS[load, p] * _power(kinematics, change, p)
+            MOMENTS[load, p] * power_of_radius(kinematics, change, p)
             for load, change in changes.items()
             for p in POWERS
         ),

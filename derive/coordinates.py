@@ -106,6 +106,16 @@ SWASHPLATE = (
 
 INPUTS = (*SWASHPLATE, *FIXED_GUSTS)
 
+# Induced velocity through the disk: uniform, and growing with the distance from the diameter about which it turns over.
+# A blade sees the latter two as it sees the flap and the roll of a gimbal.
+BLADE_INFLOW = tuple(
+    Coordinate(f"inflow_{part}", "m/s", "inflow") for part in ("uniform", "outward", "aside")
+)
+FIXED_INFLOW = (
+    Coordinate("inflow_0", "m/s", "inflow"),
+    *(Coordinate(f"inflow_1{part}", "m/s", "inflow", 1, part) for part in "cs"),
+)
+
 # A straight segment of the blade between its hinges, in section axes.
 SECTION_AXES = ("x", "n", "d")
 SEGMENT_LOADS = (
@@ -133,7 +143,8 @@ def by_name(*lists: Iterable[Record]) -> dict[str, Record]:
 
 
 COORDINATE = by_name(
-    BLADE, FIXED, REACTIONLESS_PAIR, DIFFERENTIAL, BLADE_GUSTS, FIXED_GUSTS, SWASHPLATE
+    *(BLADE, FIXED, REACTIONLESS_PAIR, DIFFERENTIAL, BLADE_GUSTS, FIXED_GUSTS, SWASHPLATE),
+    *(BLADE_INFLOW, FIXED_INFLOW),
 )  # a name that two lists have is the same motion in both
 # Motions in pairs that a quarter turn of the rotor carries into each other, each with the other.
 PARTNER = {
@@ -156,6 +167,8 @@ LISTS = {
     "BLADE_GUSTS": "Gusts along a blade's axes.",
     "FIXED_GUSTS": "Gusts in the fixed frame.",
     "SWASHPLATE": "Motions of the swashplate.",
+    "BLADE_INFLOW": "Induced velocity that one blade sees.",
+    "FIXED_INFLOW": "Induced velocity of the rotor: uniform, and its first harmonics.",
     "SEGMENT_LOADS": "Generalised loads of a segment, rows of L and W.",
     "SEGMENT_MOTIONS": "Motions along a segment, columns of L and rows of U.",
 }

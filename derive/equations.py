@@ -17,6 +17,7 @@ from derive import (
     drive_train,
     flap_lag_springs,
     inertia,
+    inflow,
     lift_lag,
     lift_slope,
     moving,
@@ -30,6 +31,7 @@ from derive import (
 from derive import kinematics as kin
 from derive.coordinates import (
     BLADE_GUSTS,
+    BLADE_INFLOW,
     DIFFERENTIAL,
     FIXED_GUSTS,
     REACTIONLESS_PAIR,
@@ -51,6 +53,8 @@ from derive.kinds import (
     element_matrix,
     element_motion,
     geometry_matrix,
+    inflow_stiffness,
+    inflow_work,
     loads_matrix,
     motion_matrix,
     product,
@@ -77,6 +81,10 @@ STRIP_THEORY = "quasi-steady strip theory, as NASA TN D-7677"
 BESIDE_LINE = "mass beside the pitch axis, which AIAA-2002-1604 has not; positions as Eqs. 2-11"
 BESIDE = f"{STRIP_THEORY}, at an aerodynamic centre beside the pitch axis"
 LATE = "strip theory whose circulation lags by Jones' approximation of Wagner's function, NACA Report 681"
+THROUGH_DISK = "momentum theory; Pitt and Peters, Vertica 5 (1981), in axial flow"
+SEEN_FROM_DISK = (
+    f"{STRIP}, induced velocity by the functions of the disk of Pitt and Peters, Vertica 5 (1981)"
+)
 CLOSED = (
     "u_T = Omega r and u_P = V, constant chord, no compressibility, as NASA TN D-7677; valid down to V = 0"
 )
@@ -187,6 +195,14 @@ LIFT_LAG = (
     product("change_by_gusts", "Change of a blade's circulation per gust.", lift_lag.products, LATE),
     product("work", "Virtual work of a blade's circulation, one column.", lift_lag.products, LATE),
 )
+INFLOW = (
+    values("momentum", inflow.momentum, THROUGH_DISK),
+    inflow_work("virtual_motion", inflow.virtual_motion, SEEN_FROM_DISK),
+    motion_matrix("motion", inflow.motion, SEEN_FROM_DISK, names(BLADE_INFLOW)),
+    inflow_stiffness(
+        "geometric_stiffness", inflow.geometric_stiffness, f"{STEADY_LOADS}, seen from the disk"
+    ),
+)
 LIFT_SLOPE = (values("load_moments", lift_slope.load_moments, CLOSED, MOMENTS),)
 TRIM = (
     column("residual", trim.residual, STEADY, ROWS, ROW_EQUATION),
@@ -269,6 +285,9 @@ STEPS = {
         Step("section", "Loads of a blade section", SECTION),
         Step("airloads", "Airloads of one blade, segment by segment", AIRLOADS),
         Step("lift_lag", "Lag of lift, in shape functions along the blade", LIFT_LAG),
+        Step(
+            "inflow", "Dynamic inflow in axial flight: momentum, and what a blade has to do with it", INFLOW
+        ),
         Step("lift_slope", "Lift-slope airloads of the published set in closed form", LIFT_SLOPE),
         Step("trim", "Trim balance of one blade", TRIM),
         Step("multiblade", "From one blade to N blades in the fixed frame", MULTIBLADE),

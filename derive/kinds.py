@@ -16,6 +16,7 @@ import sympy as sp
 from derive import airloads, beam, blade_element, function, moving, multiblade
 from derive import kinematics as kin
 from derive.coordinates import (
+    BLADE_INFLOW,
     LOAD,
     MOTION,
     REACTIONLESS_PAIR,
@@ -25,6 +26,7 @@ from derive.coordinates import (
     names,
 )
 from derive.function import (
+    FORCE,
     MOMENT,
     DimensionOf,
     Function,
@@ -293,6 +295,24 @@ def circulation_loads(name: str, derivation: Derivation, origin: str) -> Line:
         return plus(LOAD[load].dimension, minus=(0, 1, -1))
 
     return matrix(name, derivation, origin, names(SEGMENT_LOADS), ("circulation",), dimension)
+
+
+def inflow_work(name: str, derivation: Derivation, origin: str) -> Line:
+    """Make W of the inflow of a segment: what loads of the segment add to the loads that make the inflow."""
+
+    def dimension(load: str, _: str) -> Dimension:
+        return plus(FORCE, minus=LOAD[load].dimension)
+
+    return matrix(name, derivation, origin, names(SEGMENT_LOADS), names(BLADE_INFLOW), dimension)
+
+
+def inflow_stiffness(name: str, derivation: Derivation, origin: str) -> Line:
+    """Make the change of the loads that make the inflow with the coordinates of a blade, of one segment."""
+
+    def dimension(_: str, column: str) -> Dimension:
+        return plus(FORCE, minus=coordinate_dimension(column))
+
+    return matrix(name, derivation, origin, names(BLADE_INFLOW), kin.COORDINATES, dimension)
 
 
 def reactionless_matrix(name: str, kind: str, order: int, motions: tuple[Coordinate, ...]) -> Line:

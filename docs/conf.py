@@ -3,6 +3,7 @@
 import sys
 from importlib.metadata import version as version_of
 from pathlib import Path
+from typing import Any
 
 sys.path[:0] = [str(Path(__file__).parent / "extensions"), str(Path(__file__).parents[1])]
 
@@ -20,7 +21,7 @@ extensions = [
     "plain_text",
     "source_pages",
 ]
-exclude_patterns = ["_build", "extensions", "templates", "examples/*.ipynb"]  # the last are to download
+exclude_patterns = ["_build", "extensions", "templates"]
 source_suffix = {
     ".rst": "restructuredtext",
     ".md": "myst-nb",
@@ -51,3 +52,8 @@ html_copy_source = False
 html_show_sphinx = False
 html_show_copyright = False
 html_theme_options = {"source_repository": "", "top_of_page_buttons": []}
+
+
+def setup(app: Any) -> None:
+    """Notebooks are files to download, as those of the examples, and no pages."""
+    app.registry.source_suffix.pop(".ipynb")

@@ -41,6 +41,7 @@ NOT_RUN = {
     "make": "a whole environment, or minutes; tests/project/test_readme.py holds the targets, CI runs most of them",
     "python -m benchmarks": "minutes; writes the tables and figures of pages",
     "proprotor explore": "a server, which its own tests start",
+    "page = pp.explore(": "a notebook's cell; tests/explore/test_notebook.py has an event loop for it",
     "proprotor report": "half a minute each; tests/report/test_report.py makes reports",
     "pip install": "changes the environment; tests/verify/test_packaging.py installs both wheels",
     "source ": "the shell that a reader works in",

@@ -8,6 +8,7 @@ written by a command.
 | `display` | an equation, a table or a list as a notebook shows it |
 | `chain` | the tools of the cells that a reader may change |
 | `figures` | pictures of the notebooks |
+| `drawings` | drawings of axes, hinges, gimbal and swashplate, by ``python -m derive.pages.drawings`` |
 | `notebooks` | docs/notebooks, by ``python -m derive.pages.notebooks`` |
 | `index` | docs/equations.md, by ``python -m derive.pages.index`` |
 | `glossary` | docs/symbols.md, by ``python -m derive.pages.glossary`` |
@@ -15,4 +16,4 @@ written by a command.
 The modules may import anything of `derive`. Nothing else in `derive` imports them.
 """
 
-__all__ = ["chain", "display", "figures", "glossary", "index", "notebooks"]
+__all__ = ["chain", "display", "drawings", "figures", "glossary", "index", "notebooks"]

@@ -5,7 +5,7 @@ of rooms, and a room imports only the rooms above it. docs/architecture.md descr
 each room is its map.
 
     errors typing needs units datum files   the ground: messages, types, packages and memory, SI, numbers, files
-    compiled    C for whole batches: eigenvalues, trims and matrices, where there is a compiler
+    compiled    C for a point or many: eigenvalues, trims and matrices, where there is a compiler
     records     time histories of a test: frequency and damping of their modes, with errors
     nastran     files of Nastran: modes at a grid point, matrices of a reduced structure
     rotor       a rotor trimmed in its air: section loads, operation, options, the trim

@@ -4,6 +4,8 @@ Needs Chromium and its driver; `make test-browser` runs this and tells where the
 """
 
 import re
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -120,10 +122,106 @@ def test_what_was_set_is_downloaded_as_a_deck_that_runs(page):
     assert case.sources[PRECONE].status == "assumed"
 
 
-def test_the_page_fits_a_small_screen_and_says_nothing_to_the_console(page):
-    wide, seen = page.execute_script(
+def fits(browser):
+    wide, seen = browser.execute_script(
         "return [document.documentElement.scrollWidth, document.documentElement.clientWidth];"
     )
-    assert wide <= seen
+    return wide <= seen
+
+
+def columns_of_plots(browser):
+    script = """const plots = Bokeh.documents[0].get_model_by_name("plots");
+      const view = Bokeh.index.find_one(plots);
+      return view.child_views.map((one) => Math.round(one.el.getBoundingClientRect().left));"""
+    return len(set(browser.execute_script(script)))
+
+
+def test_the_page_fits_screens_of_all_widths_and_says_nothing_to_the_console(page):
+    assert fits(page)
+    for width, columns in ((500, 1), (1280, 2)):
+        page.set_window_size(width, 800)
+        wait(page, lambda columns=columns: columns_of_plots(page) == columns)
+        assert fits(page)
     assert [one for one in page.get_log("browser") if one["level"] == "SEVERE"] == []
     assert page.title
+
+
+def test_sliders_and_plots_have_names_for_those_who_do_not_see_them(page):
+    assert focus(page, PRECONE).get_attribute("aria-label") == "precone (deg)"
+    assert focus(page, "airspeed").get_attribute("aria-label") == "Airspeeds (KTAS), lowest"
+    script = """return [...Bokeh.index.all_views()].filter((one) => one.model.type === "Figure")
+      .map((one) => [one.el.getAttribute("role"), one.el.getAttribute("aria-label")]);"""
+    named = page.execute_script(script)
+    assert {role for role, _ in named} == {"img"}
+    assert {name.partition(":")[0] for _, name in named} >= {"Damping", "Frequency", "Root locus"}
+
+
+def boundary(browser):
+    script = """const source = Bokeh.documents[0].get_model_by_name("boundary");
+      return [...source.get_column("x")].map((line) => Array.from(line));"""
+    return browser.execute_script(script)
+
+
+def test_the_map_follows_a_slider(page):
+    wait(page, lambda: boundary(page))
+    before = boundary(page)
+    focus(page, "rotor.control_stiffness").send_keys(Keys.ARROW_LEFT * 20)
+    wait(page, lambda: boundary(page) != before)
+    assert page.execute_script(MODEL + "return model.get_column('x').length;", "deck-boundary") > 0
+
+
+def test_bad_input_is_told_in_the_page_which_goes_on(page):
+    set_line = MODEL + "model.value = arguments[1];"
+    shown = """const message = Bokeh.documents[0].get_model_by_name("message");
+      return Bokeh.index.find_one(message).markup_el.textContent;"""
+    page.execute_script(set_line, "exact", "airspeed = 300 kg")
+    wait(page, lambda: "Cannot be: airspeed" in page.execute_script(shown))
+    page.execute_script(set_line, "exact", "airspeed = 300:800:50kt")
+    wait(page, lambda: "Not analysed at" in page.execute_script(shown))
+
+
+def test_readers_have_settings_of_their_own(page, tmp_path):
+    """A second browser on the same server starts from the deck, and its slider moves nothing of the first one."""
+    focus(page, PRECONE).send_keys(Keys.ARROW_RIGHT * 5)
+    value = page.execute_script(MODEL + "return model.value;", PRECONE)
+    wait(page, lambda: f"precone {value:.4g} deg" in readout(page))
+    mine = readout(page)
+    other = chromium(str(tmp_path))
+    try:
+        other.get(page.current_url)
+        wait(other, lambda: "All inputs as in the deck" in readout(other))
+        focus(other, "rotor.control_stiffness").send_keys(Keys.ARROW_RIGHT * 5)
+        wait(other, lambda: "Changed: control stiffness" in readout(other))
+        assert "precone" not in readout(other) and readout(page) == mine
+    finally:
+        other.quit()
+
+
+NOTEBOOK = """
+import asyncio
+import proprotor as pp
+
+async def cell():
+    page = pp.explore(pp.load_case("xv15-uncoupled"), "300:400:20kt")
+    print(page._repr_html_(), flush=True)
+    await asyncio.sleep(600)
+
+asyncio.run(cell())
+"""
+
+
+def test_a_notebook_of_another_origin_shows_the_page_in_a_frame(browser, tmp_path):
+    (tmp_path / "kernel.py").write_text(NOTEBOOK)
+    kernel = subprocess.Popen([sys.executable, tmp_path / "kernel.py"], stdout=subprocess.PIPE, text=True)
+    try:
+        frame = kernel.stdout.readline()
+        (tmp_path / "notebook.html").write_text(f"<html><body>{frame}</body></html>")
+        browser.get((tmp_path / "notebook.html").as_uri())
+        browser.switch_to.frame(0)
+        wait(browser, lambda: "between 300 and 400 KTAS" in readout(browser) or "Flutter" in readout(browser))
+    finally:
+        browser.switch_to.default_content()
+        browser.get("about:blank")
+        kernel.terminate()
+        kernel.wait(timeout=30)
+        kernel.stdout.close()

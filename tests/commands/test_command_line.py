@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import re
+import shlex
 import subprocess
 import sys
 import time
@@ -336,3 +338,18 @@ def test_a_neutral_mode_is_not_called_unstable():
         for p in azimuth
     )
     assert document["unstable ranges (m/s, interpolated)"] == []
+
+
+def test_a_shortened_warning_names_a_command_that_prints_the_whole_of_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a deck.toml").write_text('base = "xv15"\n\n[case]\nname = "other"\ntitle = "Another"\n')
+    printed = (
+        CliRunner().invoke(main, ["sweep", "a deck.toml", "--speed", "200kt"], env={"COLUMNS": "80"}).output
+    )
+    commands = set(re.findall(r"\((proprotor cases [^)]*)\)", " ".join(printed.split())))
+    assert commands == {"proprotor cases 'a deck.toml'"}
+    for command in commands:
+        told = CliRunner().invoke(main, shlex.split(command)[1:])
+        assert told.exit_code == 0 and "Warning: The nacelle's centre of mass" in " ".join(
+            told.output.split()
+        )

@@ -439,3 +439,69 @@ def test_a_study_as_json(tmp_path):
         for x in (1, 2)
     ]  # fmt: skip
     assert found["lowest damping (% of critical)"] == pytest.approx(100 * min(lowest), rel=1e-6)
+
+
+# The worst of a box, and shares of the variance ----------------------------------------------------------------------
+
+BOX = ("--worst-of", "rotor.precone=2:3 deg", "--worst-of", "rotor.control_stiffness=0.9:1.1 of deck")
+
+
+def test_the_worst_of_a_box_is_told_as_table_json_and_csv(tmp_path):
+    case, scan = "xv15-uncoupled", ("--scan", "300:420:10kt")
+    table = run("boundary", case, *BOX, *scan, "--csv", tmp_path / "a.csv")
+    document = json.loads(run("boundary", case, *BOX, *scan, "--json").stdout)
+    limits = {"rotor.precone": ("2 deg", "3 deg"), "rotor.control_stiffness": pp.sampling.Relative(0.9, 1.1)}
+    found = pp.robust_boundary(pp.load_case(case), limits, "300:420:10kt", workers=1)
+    assert f"Worst flutter speed found: {float(found.speed) / KT:.2f} KTAS" in table.stdout
+    assert "a search is no proof" in table.stdout and f"{found.attrs['evaluated']} designs" in table.stdout
+    assert document["worst flutter speed (m/s)"] == pytest.approx(float(found.speed), abs=1e-9)
+    assert document["evaluated"] == found.attrs["evaluated"] and document["mode"] == found["mode"]
+    rows = list(csv.DictReader(without_comments(tmp_path / "a.csv")))
+    for row, name in zip(rows, limits, strict=True):
+        one = found.sel(input=name)
+        assert row["input"] == name and row["side"] == one.side
+        assert float(row["worst"]) == pytest.approx(float(one.value / one.deck_unit_in_si), rel=1e-9)
+    assert [row["unit"] for row in rows] == ["deg", "ft*lbf/rad"]
+    assert float(rows[0]["low"]) == pytest.approx(2) and float(rows[0]["high"]) == pytest.approx(3)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ((*BOX, "--first"), "--first: goes without --worst-of"),
+        ((*BOX, "--against", "rotor.precone=1:2:1 deg"), "--against: goes without --worst-of"),
+        ((*BOX, *BOX[:2]), "must not give an input twice"),
+        (("--worst-of", "rotor.precone=2 deg"), "must have two limits"),
+        (("--worst-of", "rotor.precone"), "must be an input and two limits"),
+        (("--worst-of", "rotor.precone=a:b of deck"), "must have two factors"),
+        ((), "--against: must be given"),
+    ],
+)
+def test_what_is_no_box_is_refused_in_one_line(given, told):
+    done = run("boundary", "xv15-uncoupled", *given)
+    assert done.exit_code == 2 and told in done.stderr and not done.stdout
+
+
+SALTELLI = ("--vary", "rotor.precone=2:3 deg", "--vary", "rotor.control_stiffness=0.9:1.1 of deck")
+
+
+def test_shares_of_the_variance_of_a_saltelli_sample_have_their_intervals():
+    sample = (*SALTELLI, "--sample", "saltelli", "--size", "4", "--flutter", "--workers", "1")
+    asked = ("study", "xv15-uncoupled", *sample, "--speed", "300:440:20kt")
+    document = json.loads(run(*asked, "--json").stdout)
+    shares = document["shares of the variance"]
+    inputs = {"rotor.precone": ("2 deg", "3 deg"), "rotor.control_stiffness": pp.sampling.Relative(0.9, 1.1)}
+    plan = pp.sampling.saltelli(inputs, 4)
+    found = pp.sobol_indices(
+        pp.study(pp.load_case("xv15-uncoupled"), plan, "300:440:20kt", "flutter", workers=1)
+    )
+    for record in shares:
+        own = found.sel(input=record["input"])
+        assert record["with interactions (%)"] == pytest.approx(100 * float(own.total), rel=1e-9)
+        assert record["alone ± (%)"] == pytest.approx(100 * float(own.first_half_interval), rel=1e-9)
+    table = run(*asked).stdout
+    assert "± is half of an interval of 95 % confidence" in table
+    for record in shares:
+        assert f"{record['with interactions ± (%)']:.1f}" in table
+    stable = run("study", "xv15-uncoupled", *sample, "--speed", "100:140:20kt").stdout
+    assert "shares of the variance" not in stable.lower() or "No shares of the variance" in stable

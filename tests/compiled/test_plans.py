@@ -25,6 +25,7 @@ OPTIONS = (
     {"rotor_speed": "constant"},
     {"equations": "published"},
     {"lift": "lagged"},
+    {"inflow": "dynamic"},
     {"locked": ("lag", "gimbal")},
     {"structure": "diagonal"},
 )

@@ -43,6 +43,7 @@ OPTIONS = (
     {"pitch": "coupling"},
     {"airloads": "none"},
     {"lift": "lagged"},
+    {"inflow": "dynamic"},
     {"shaft_angle": 0.02},
     {
         "structure": "tabulated",

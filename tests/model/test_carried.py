@@ -27,7 +27,7 @@ from proprotor.model import options_in_force, options_of_result, stamp
 from proprotor.model.deck_fingerprint import deck_fingerprint
 from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, reasons_for_doubt
 from proprotor.model.several_rotors import MountedRotor
-from proprotor.plots import mode_motion
+from proprotor.plots import mode_motion, small_print
 from proprotor.plots.mode_shape import title_of
 from proprotor.rotor.options import CHOICES, Options, parse_options
 from proprotor.stability import flutter
@@ -267,6 +267,7 @@ OTHERWISE = {
     "compressibility": False,
     "section_damping": False,
     "lift": "lagged",
+    "inflow": "dynamic",
     "rotor_speed": "constant",
     "reactionless": True,
     "backend": "compiled",
@@ -607,7 +608,7 @@ def test_pictures_say_case_options_and_doubts():
         ),
     }
     for name, ax in drawn.items():
-        text = " ".join(text.get_text().replace("\n", " ") for text in ax.texts)
+        text = small_print.read(ax)
         assert "Case xv15-uncoupled" in text, name
         assert name == "distribution" or "options: " in text or "default options" in text, name
         assert MACH in text or name == "distribution", name
@@ -658,7 +659,7 @@ def test_sobol_indices_carry_them():
     indices = pp.sobol_indices(results)
     assert int(indices.doubtful) == int((results.flutter_warning != "").sum()) > 0
     assert stamp.of(indices.attrs) == stamp.of(results.attrs) and MACH in indices.attrs["doubts"]
-    text = " ".join(text.get_text().replace("\n", " ") for text in plots.plot_sobol(indices).texts)
+    text = small_print.read(plots.plot_sobol(indices))
     assert "Case xv15-uncoupled" in text and MACH in text
 
 

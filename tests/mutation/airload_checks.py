@@ -137,6 +137,16 @@ def _segments(published: bool) -> Iterator[Check]:
 # Airloads of a blade
 
 
+def quantities_of_segments() -> Quantities:
+    """Of the segments, (points, segments), with all first-order terms."""
+    return _quantities(published=False)
+
+
+def arrays_of_blade() -> Quantities:
+    """W, U, G and L of the segments as generated, with all first-order terms."""
+    return _arrays(published=False)
+
+
 @functools.cache
 def _arrays(published: bool) -> Quantities:
     """W, U, G and L of the segments as generated, one of which a check makes again."""

@@ -225,16 +225,11 @@ def test_a_page_has_the_pictures_of_the_cycle_and_nothing_from_elsewhere(case, t
     assert f"<title>{motion.case}: torsion at " in text
 
 
-@pytest.mark.parametrize("found", ["on the path", "of the package"])
-def test_a_film_has_whole_cycles(case, tmp_path, found):
-    imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
-    if found == "on the path" and not FFMpegWriter.isAvailable():
-        found = "of the package"
-    where = {"animation.ffmpeg_path": "no-such-program"} if found == "of the package" else {}
-    with matplotlib.rc_context(where):
-        path = animate_mode(mode_motion(case, SPEED, "torsion"), tmp_path / "torsion.mp4", frames=6, dpi=50)
+@pytest.mark.skipif(not FFMpegWriter.isAvailable(), reason="needs the program ffmpeg")
+def test_a_film_has_whole_cycles(case, tmp_path):
+    path = animate_mode(mode_motion(case, SPEED, "torsion"), tmp_path / "torsion.mp4", frames=6, dpi=50)
     raw = ["-f", "rawvideo", "-pix_fmt", "gray", "-"]
-    read = subprocess.run([imageio_ffmpeg.get_ffmpeg_exe(), "-i", str(path), *raw], capture_output=True)
+    read = subprocess.run([FFMpegWriter.bin_path(), "-i", str(path), *raw], capture_output=True)
     about = read.stderr.decode().partition("Output")[0]
     assert "h264" in about and "yuv420p" in about and "400x220" in about and "12 fps" in about
     film = np.frombuffer(read.stdout, np.uint8).astype(float).reshape(-1, 220, 400)
@@ -242,6 +237,16 @@ def test_a_film_has_whole_cycles(case, tmp_path, found):
     again, later = (np.abs(film[1] - film[place]).mean() for place in (7, 4))
     assert again < 0.2 * later and later > 0.5
     assert [one.name for one in tmp_path.iterdir()] == ["torsion.mp4"] and not plt.get_fignums()
+
+
+def test_a_film_without_ffmpeg_is_refused_in_one_line(case, tmp_path):
+    motion, missing = mode_motion(case, SPEED, "torsion"), {"animation.ffmpeg_path": "no-such-program"}
+    with (
+        matplotlib.rc_context(missing),
+        pytest.raises(pp.InputError, match="needs the program ffmpeg") as caught,
+    ):
+        animate_mode(motion, tmp_path / "torsion.mp4")
+    assert "\n" not in str(caught.value) and not list(tmp_path.iterdir())
 
 
 def test_an_animation_that_cannot_be_made_is_refused(case, tmp_path):

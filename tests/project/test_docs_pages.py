@@ -94,3 +94,16 @@ def test_every_generated_module_is_in_the_reference_and_every_function_in_the_th
     assert set(re.findall(r"automodule:: proprotor_equations\.([\w.]+)", page)) == modules | published
     theory = "".join(page.read_text(encoding="utf-8") for page in (DOCS / "theory").glob("*.md"))
     assert all(f"#proprotor_equations.{name}." in theory for name in modules)
+
+
+WRITTEN_BY_HAND = [
+    page
+    for page in PAGES
+    if not re.search(r"[Ww]ritten by\s+`?(python|make|proprotor)", page.read_text(encoding="utf-8")[:600])
+]
+MOST_WORDS = 3000  # of a page that is read, not looked up: a quarter of an hour
+
+
+@pytest.mark.parametrize("page", WRITTEN_BY_HAND, ids=name_of)
+def test_a_page_can_be_read_in_a_quarter_of_an_hour(page):
+    assert len(page.read_text(encoding="utf-8").split()) <= MOST_WORDS, "split the page"

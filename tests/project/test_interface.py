@@ -35,6 +35,8 @@ def test_the_function_stays_where_its_room_is_imported():
     room = import_module("proprotor.study")
     pp.study = room  # as the import system does
     assert pp.study is interface.study is not room
+    pp.explore = room = import_module("proprotor.explore")
+    assert pp.explore is interface.explore is not room
 
 
 def test_a_name_that_is_not_there_is_told():

@@ -14,7 +14,6 @@ import tomllib
 import tracemalloc
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
@@ -73,11 +72,6 @@ SAMPLED = (
 GRID = ("study", "xv15-uncoupled", "--vary", f"{PRECONE}=1:2:1 deg", "--speed", "200 kt", "--out")
 
 
-def film_without_ffmpeg(path):
-    with matplotlib.rc_context({"animation.ffmpeg_path": "no-such-program"}):
-        animate_mode(None, path)
-
-
 OF_SALTELLI = xr.Dataset({"growth_rate": ("design", np.ones(3))}, attrs={"sample": json.dumps({})})
 BASE = "a package that comes with proprotor"
 NEEDS = {
@@ -113,7 +107,6 @@ NEEDS = {
         "explore",
         lambda folder: command("explore", "xv15-uncoupled", "--no-browser"),
     ),
-    "a film": ("imageio_ffmpeg", "film", lambda folder: film_without_ffmpeg(folder / "x.mp4")),
     "Nastran's HDF5 file": ("h5py", "nastran", lambda folder: read_hdf5(Path(__file__), grid=1)),
 }
 

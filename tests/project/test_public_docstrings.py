@@ -4,6 +4,7 @@ They are read with numpydoc, the standard of the ecosystem. What is public: the 
 classes of the modules listed below, and of all those classes the public methods and properties.
 """
 
+import asyncio
 import dataclasses
 import inspect
 import re
@@ -247,7 +248,8 @@ GENERATED = generated_functions()
 
 UNIT_OR_SHAPE = re.compile(r"^\[[^\]]+\] |\(\.\.\., [\w, ]+\)")
 SOURCE = re.compile(
-    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads)",
+    r"Source: .*(Eqs?\. \d|nomenclature|strip theory|Prandtl-Glauert|Euler-Bernoulli|NASA|steady loads"
+    r"|momentum theory)",
     re.DOTALL,
 )
 
@@ -289,6 +291,15 @@ def with_envelope(case: pp.Case) -> pp.Case:
     return pp.load_case(case.name, {"envelope.dive_speed": "200 keas", "envelope.altitudes": altitudes})
 
 
+def explored(case: pp.Case, **more: Any) -> None:
+    """The page of a case, in an event loop as a notebook has one."""
+
+    async def cell() -> None:
+        pp.explore(case, SPEEDS, **more).stop()
+
+    asyncio.run(cell())
+
+
 # How each function with options of the model is called.
 LOOP = pp.ControlLoop(name="hold", sensors="x rate", inputs="cyclic_1c", gain=-1e-3)
 WITH_OPTIONS: dict[str, Callable[..., Any]] = {
@@ -301,6 +312,7 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "Case.sensitivity": lambda case, **more: case.sensitivity(airspeed=SPEEDS, **more),
     "Case.envelope": lambda case, **more: with_envelope(case).envelope(SPEEDS, **more),
     "envelope": lambda case, **more: pp.envelope(with_envelope(case), SPEEDS, **more),
+    "explore": explored,
     "Case.growth_constraint": lambda case, **more: case.growth_constraint(SPEEDS, (), **more),
     "growth_constraint": lambda case, **more: pp.growth_constraint(case, SPEEDS, (), **more),
     "Case.attribution": lambda case, **more: case.attribution(150.0, **more),
@@ -323,6 +335,9 @@ WITH_OPTIONS: dict[str, Callable[..., Any]] = {
     "sensitivity.sensitivity": lambda case, **more: sensitivity(case, airspeed=SPEEDS, **more),
     "map.stability_map": lambda case, **more: stability_map(case, AXES, **more),
     "sweep.sweep_case": lambda case, **more: sweep_case(case, SPEEDS, **more),
+    "robust_boundary": lambda case, **more: pp.robust_boundary(
+        case, {"rotor.precone": ("1 deg", "2 deg")}, SPEEDS, **more
+    ),
 }
 STATIONS = pp.BladeStations(
     radius=np.array([0.0, 0.5, 1.0]),

@@ -246,7 +246,7 @@ def test_the_picture_has_both_margins_of_every_loop_and_what_is_needed(found):
     assert {line.get_label() for line in shown} == {"damper", "gimbal"}
     (damper,) = [line for line in above.get_lines() if line.get_label() == "damper"]
     np.testing.assert_allclose(damper.get_ydata(), np.minimum(decibels(found)[:, 0], 30))
-    assert "needed: 45" in [text.get_text() for text in below.texts]
+    assert "needed: 45 deg" in [text.get_text() for text in below.texts]
     assert "damper: x acceleration to cyclic_1c" in " ".join(
         text.get_text().replace("\n", " ") for text in figure.texts
     )

@@ -44,17 +44,17 @@ def by_force(box, points):
     speeds = found.flutter_speed.values
     assert not np.isfinite(found.flutter_speed_below).any()
     lowest = int(np.nanargmin(speeds))
-    return speeds[lowest], places[lowest], found.flutter_mode.values
+    return speeds[lowest], places[lowest], found.flutter_mode.values[lowest]
 
 
 @pytest.mark.parametrize("name", BOXES)
 def test_no_design_of_a_grid_is_worse(name):
     box = BOXES[name]
     found = robust_boundary(CASE, box, SPEEDS, workers=1, size=32)
-    lowest, place, modes = by_force(box, 7)
+    lowest, place, mode = by_force(box, 7)
     speed = float(found.speed)
     assert speed <= lowest + FINER
-    assert {*modes[modes != ""]} <= {*found["first"].values.tolist()}
+    assert mode in found["first"].values
     worst = dict(zip(found.input.values.tolist(), found.value.values.tolist(), strict=True))
     again = flutter_speed(worst)
     assert abs(again.speed - speed) < FINER and again.mode == found.mode

@@ -68,6 +68,38 @@ def test_indices_of_a_sum_need_no_second_order():
     assert np.allclose(found.total, [0.9, 0.1, 0], atol=0.02)
 
 
+def drawn_by_chance(seed, size=256):
+    """Results of y = 3 x1 + x2 over base samples that are independent draws, laid out as SALib's."""
+    one, other = np.random.default_rng(seed).random((2, size, 2))
+    first, second = (np.where(np.arange(2) == place, other, one) for place in (0, 1))
+    x = np.stack([one, first, second, other], axis=1).reshape(-1, 2)
+    sample = {"method": "saltelli", "size": size, "seed": seed, "inputs": ["x1", "x2"], "second_order": False}
+    return xr.Dataset({"y": ("design", 3 * x[:, 0] + x[:, 1])}, attrs={"sample": json.dumps(sample)})
+
+
+def held(samples, level):
+    """How many of the intervals of first and total shares hold the true ones, 9/10 and 1/10."""
+    count = 0
+    for sample in samples:
+        found = sobol_indices(sample, of="y", confidence=level)
+        for name in ("first", "total"):
+            count += int((np.abs(found[name] - [0.9, 0.1]) < found[f"{name}_half_interval"]).sum())
+    return count
+
+
+def test_intervals_hold_the_true_shares_as_often_as_they_say():
+    """Of 160 intervals of 40 samples of independent draws; the limits are four deviations of 80 that are independent.
+
+    A Sobol sequence is better than chance, and its intervals, which do not know it, hold more often.
+    """
+    by_chance = list(map(drawn_by_chance, range(40)))
+    for level in (0.95, 0.5):
+        off = 4 * 160 * np.sqrt(level * (1 - level) / 80)
+        assert abs(held(by_chance, level) - 160 * level) < off, level
+    plans = (sampling.saltelli(dict.fromkeys(("x1", "x2"), (0, 1)), 64, seed=seed) for seed in range(20))
+    assert held((results(plan, lambda x1, x2: 3 * x1 + x2) for plan in plans), 0.95) >= 76
+
+
 def test_indices_are_those_of_a_study_from_a_file(sampled, tmp_path):
     save_results(sampled, tmp_path / "study.nc")
     xr.testing.assert_identical(

@@ -30,7 +30,6 @@ ALL = {
     "salib": ("study/test_sampling.py", "study/test_uncertainty.py"),
     "scipy": ("support/test_matrix_market.py", "exchange/test_matlab_file.py"),
     "tornado": ("explore",),
-    "imageio_ffmpeg": ("plots/test_plots_of_motion.py",),
     "typst": ("report",),
     "xarray": ("stability/test_airspeeds.py", "study/test_mode_damping.py"),
 }
@@ -119,7 +118,6 @@ SHORT = ALL | {
         f"{_EXPLORE}::test_the_server_answers_this_machine_alone",
         f"{_EXPLORE}::test_a_port_that_is_taken_is_one_message",
     ),
-    "imageio_ffmpeg": ("plots/test_plots_of_motion.py::test_a_film_has_whole_cycles",),
     "typst": ("report/test_report.py::test_the_pdf_has_the_same_numbers",),
     "xarray": (
         "stability/test_airspeeds.py::test_ranges_lists_quantities_and_labelled_arrays",

@@ -24,6 +24,7 @@ from proprotor.study.study_file import is_study_file, read_study, repeated, save
 from proprotor.study.uncertainty import distribution
 from proprotor.study.variables import DEFAULT_QUANTITIES
 from proprotor.tables.percentiles import percentile_text
+from proprotor.tables.sobol_table import SHARES, SOBOL_COLUMNS, WHY_NOT, sobol_cells
 from proprotor.tables.study_summary import study_summary
 from proprotor.tables.study_table import StudyTable
 from proprotor.typing import Dataset
@@ -278,6 +279,7 @@ def _print_flutter(results: Dataset, found: Mapping[str, Any]) -> None:
     out = output.console()
     if "sample" in results.attrs:
         _print_percentiles(results)
+        _print_shares(found)
     elif found["flutter speeds found"]:
         low, high = (found[f"{end} flutter speed (m/s)"] / KNOT for end in ("lowest", "highest"))
         doubts = found["flutter speeds doubtful"]
@@ -288,6 +290,19 @@ def _print_flutter(results: Dataset, found: Mapping[str, Any]) -> None:
         out.print("no flutter speed was found")
     for text, count in list(found["notes"].items())[:_REASONS]:
         out.print_hanging(f"  {count} × ", text)
+
+
+def _print_shares(found: Mapping[str, Any]) -> None:
+    """Print each input's share of the variance of a Saltelli sample with its interval, or why there is none."""
+    if SHARES in found:
+        doubts = found["doubts of the shares"]
+        cells = (sobol_cells(record, doubts) for record in found[SHARES])
+        output.print_table(SOBOL_COLUMNS, cells, text=SOBOL_COLUMNS[:1])
+        half = f"± is half of an interval of {100 * found['confidence of the shares']:g} % confidence"
+        treatment = found["treatment of the shares"]
+        output.console().print(f"Shares of the variance; {half}. {treatment}", soft_wrap=True)
+    elif WHY_NOT in found:
+        output.console().print(f"No shares of the variance: {found[WHY_NOT]}.", soft_wrap=True)
 
 
 def _print_percentiles(results: Dataset) -> None:

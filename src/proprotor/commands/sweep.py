@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import textwrap
 from typing import Any
 
@@ -58,7 +59,7 @@ def sweep(
     table = SweepTable(found, case.operation.rotor_speed, arguments.unit_of(speed))
     outputs.write(
         document=lambda: output.about(case, request) | _document(table),
-        table=lambda: _print(case, table, all_modes),
+        table=lambda: _print(case, request.name, table, all_modes),
         csv=table.csv,
         plot=lambda: plot_sweep(
             found,
@@ -80,7 +81,7 @@ def _document(table: SweepTable) -> dict[str, Any]:
     }
 
 
-def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
+def _print(case: Case, name: str, table: SweepTable, all_modes: bool) -> None:
     """Print the case with its reservations, the table of a sweep, and where modes are unstable."""
     out = output.console()
     for line in (
@@ -88,7 +89,7 @@ def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
         f"Model: {options_text(options_in_result(table.sweep.attrs))}.",
         CONVENTION,
         *reservations(case),
-        *(_shortened(f"Warning: {text}", case, out.width) for text in case.warnings),
+        *(_shortened(f"Warning: {text}", name, out.width) for text in case.warnings),
         "",
     ):
         out.print(line)
@@ -101,6 +102,6 @@ def _print(case: Case, table: SweepTable, all_modes: bool) -> None:
         out.print(line, style="bold")
 
 
-def _shortened(text: str, case: Case, width: int) -> str:
-    """Return about two lines of a warning, and the command that prints the whole warning."""
-    return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {case.name})")
+def _shortened(text: str, name: str, width: int) -> str:
+    """Return about two lines of a warning, and the command that prints all of it; `name` is of a deck or its file."""
+    return textwrap.shorten(text, 2 * width - 20, placeholder=f" ... (proprotor cases {shlex.quote(name)})")

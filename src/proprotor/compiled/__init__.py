@@ -1,4 +1,4 @@
-"""Compiled functions: C that the system's compiler turns into a library once, and that is called for whole batches.
+"""Compiled functions: C that the system's compiler turns into a library once, and that is called for a point or many.
 
 In: arrays of many small problems. Out: their solutions, with NumPy's or LAPACK's in the places that the compiled
 functions hand over. Nothing needs this room: without a compiler everything is computed by NumPy. This room imports

@@ -192,7 +192,7 @@ void FOR(search_trim)(ptrdiff_t points, const struct blade *blade, const struct 
         for (int lane = 0; lane < LANES && point + lane < points; lane++) active[lane] = -(int64_t)(found->active[point + lane] != 0);
         if (!any(active)) continue;
         lanes q[QUANTITIES];
-        struct walk walk = {{{0}}};
+        struct walk walk = {0};
         for (int k = 0; k < UNKNOWNS; k++) {
             struct column own = {found->state + k * points, 1, 0};
             walk.state[k] = load(&own, point, points, 0);

@@ -71,7 +71,7 @@ void FOR(rotors_in_flight)(ptrdiff_t points, const struct blade *blade, const st
 {
     for (ptrdiff_t point = 0; point < points; point += LANES) {
         lanes q[QUANTITIES], tip = load(&blade->tip, point, points, 0);
-        struct walk walk = {{{0}}};
+        struct walk walk = {0};
         load_quantities(blade, point, points, q);
         lanes direction = arc_tangent(q[Q_AIRSPEED] / (THREE_QUARTERS * q[Q_ROTOR_SPEED] * tip));
         walk.state[COLLECTIVE] = limits->finds_collective ? direction : load(&blade->collective, point, points, 0);

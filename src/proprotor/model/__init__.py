@@ -6,6 +6,7 @@ configuration, and the stamp that every result has.
     linear_model         the record LinearModel: M q̈ + C q̇ + K q = B u about a trim, over a batch of points
     batches              shapes of batches, their points a few at a time, designs at many airspeeds, memory kept
     quantities           the numbers of rotor, operation and options by the names of the derivation
+    inflow               induced velocity, added to the matrices of a rotor
     lift_lag             the lag of lift, added to the matrices of a rotor
     theodorsen           lift that lags by Theodorsen's function, at one frequency after the other
     wing_lift_lag        the lag of a wing's lift, added to a coupled model
@@ -47,6 +48,7 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 from proprotor.model.closed_loop import close_loops, taken_apart
 from proprotor.model.configuration import Configuration
 from proprotor.model.deck_fingerprint import deck_fingerprint
+from proprotor.model.inflow import with_inflow
 from proprotor.model.lift_lag import lagging_blade, with_lift_lag
 from proprotor.model.linear_model import GUSTS, INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
@@ -99,6 +101,7 @@ __all__ = [
     "structural_damping",
     "taken_apart",
     "unit_doubts",
+    "with_inflow",
     "with_lift_lag",
     "with_mast",
     "with_reasons",

@@ -170,7 +170,7 @@ def _with_lag(
     """Return the matrices of some coordinates with the lag of lift, and its states behind; without gusts no B."""
     own = rotor["M"].shape[-1]
     states = len(total.angle) * len(blade.work)
-    whole = _padded(rotor, len(JONES) * states, np.result_type(*blade))
+    whole = padded(rotor, len(JONES) * states, np.result_type(*blade))
     _add_loads_at_once(whole, own, blade, total, gust_loads)
     for place, (share, rate) in enumerate(JONES.values()):
         start = own + place * states
@@ -187,7 +187,7 @@ def _gust_loads(quantities: Mapping[str, Any], gusts: Array) -> Array:
     return np.asarray(evaluate(multiblade.gust_loads, quantities, gusts))
 
 
-def _padded(rotor: Mapping[str, Array], more: int, kind: np.dtype[Any]) -> dict[str, Array]:
+def padded(rotor: Mapping[str, Array], more: int, kind: np.dtype[Any]) -> dict[str, Array]:
     """Return the matrices with rows, and of M, C and K columns too, of zeros for more coordinates."""
     return {
         name: np.pad(

@@ -163,7 +163,9 @@ def _gyroscopic(momentum: Array) -> Array:
 
 def _unloaded(shape: tuple[int, ...]) -> Trim:
     """Return a trim without loads, of a batch of some shape."""
-    still = {name: np.zeros(shape) for name in ("coning", "lag", "elastic_pitch", "thrust", "torque")}
+    still = {
+        name: np.zeros(shape) for name in ("coning", "lag", "elastic_pitch", "thrust", "torque", "inflow")
+    }
     return Trim(
         **still,
         collective=np.full(shape, np.nan),

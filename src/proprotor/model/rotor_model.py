@@ -14,6 +14,7 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
 from proprotor.errors import InputError
+from proprotor.model.inflow import with_inflow
 from proprotor.model.lift_lag import LaggingBlade, lagging_blade, reactionless_with_lift_lag, with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
@@ -25,7 +26,9 @@ from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
 from proprotor.rotor.kept import kept
+from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.motions import (
+    INFLOW,
     LAGS_PER_BLADE,
     LIFT,
     MAST_TWIST,
@@ -112,7 +115,8 @@ def model_of(
     lagging: tuple[Coordinate, ...] = ()
     if choice.blades_lag:
         lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
-    coordinates = (*FIXED, *lagging, *(coordinate for group in apart for coordinate in group))
+    inflow = INFLOW if choice.inflow_is_dynamic else ()
+    coordinates = (*FIXED, *inflow, *lagging, *(coordinate for group in apart for coordinate in group))
     asked = _Asked(sections, few, quantities, choice, target, points)
     if choice.is_tilted:
         settled = asked.trimmed(one=shape == ())
@@ -132,7 +136,7 @@ def model_of(
         else made.airspeed,
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
-        rates=tuple(coordinate.name for coordinate in coordinates if coordinate.angle == LIFT),
+        rates=tuple(coordinate.name for coordinate in coordinates if coordinate.angle in (LIFT, "inflow")),
         apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
         swing=made.swing,
     )
@@ -154,8 +158,11 @@ class _Asked(NamedTuple):
     points: int
 
     def trimmed(self, one: bool) -> Settled:
-        """Return the trim of all points; `one` says that there is one point, not an array of one."""
-        return solve_trim(*self, one=one)
+        """Return the trim of all points, with the induced velocity that the options ask for.
+
+        `one` says that there is one point, not an array of one.
+        """
+        return with_induced(*self) if self.options.has_inflow else solve_trim(*self, one=one)
 
     def at(self, rows: Array) -> _Asked:
         """Return some of the points."""
@@ -283,6 +290,8 @@ def _check_memory(rotor: Rotor, options: Options, points: int) -> None:
         count += 3 * (blades - 3)
     if options.blades_lag:
         count += LAGS_PER_BLADE * blades
+    if options.inflow_is_dynamic:
+        count += len(INFLOW)
     if options.reactionless:
         check_memory("n_blades", rotor.n_blades, _BYTES_PER_ENTRY * count**2, "the matrices")
     size = points * (_BYTES_PER_POINT + _BYTES_PER_ENTRY * count**2)
@@ -332,6 +341,8 @@ def _matrices(
             found = fused.rotor_matrices(quantities, in_air, len(rows), one, compiled)
         else:
             found = evaluate(whole_rotor.fixed_frame, given, *blade)._asdict()
+        if options.has_inflow:
+            found = with_inflow(found, segments, quantities, settled.trim.inflow[rows], options)
         late = None
         if options.blades_lag:
             late = lagging_blade(sections.take(rows), quantities, len(rows), options)

@@ -105,6 +105,9 @@ def _checked(model: LinearModel) -> tuple[Configuration, Options]:
         raise InputError(
             "lift", "theodorsen", f'goes with a model whose lift is quasi-steady, not "{choice.lift}"'
         )
+    if choice.has_inflow:
+        rule = f'goes with inflow="none", not "{choice.inflow}": a part of the wake would count twice'
+        raise InputError("lift", "theodorsen", rule)
     choice.check_blades_may_lag("theodorsen")
     return model.origin.case, choice
 

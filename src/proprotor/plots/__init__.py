@@ -11,14 +11,16 @@ round numbers, and the motion of points in a mode.
     blade_frequencies   a hinged blade beside an elastic one: frequencies over collective and rotor speed
     points              points of a CSV file, with error bars, on plots
     mode_motion         how wing, mast and blades move in a mode, as points in space
-    animation           a mode in motion, as a GIF
+    animation           a mode in motion, as a GIF, a page or a film
 
     accessor            the accessor ``.proprotor`` of datasets: their pictures, tables and files
-    canvas              the axes, and the notes around them: `rests_on` writes the reservations about a case
-    mode_lines          the lines of the modes of a sweep
+    canvas              the axes, and the notes beneath them: `rests_on` writes the reservations about a case
+    small_print         the block beneath a plot: notes, case and options, doubts
+    mode_lines          the lines of the modes of one or several sweeps
+    onsets              boundaries along a sweep, which plots mark
     end_labels          names of lines beside the axes
     bars                what plots of bars have in common
-    style               colours, dashes and markers
+    style               the style sheet: sizes, colours, dashes and markers
     line_of_sweep       positions along a sweep in the usual unit
     input_names         short names of inputs
     headless            drawing for a file, without a window

@@ -18,7 +18,7 @@ from proprotor.errors import InputError
 from proprotor.files.output import check_place, write_whole
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK
-from proprotor.needs import check_memory, need
+from proprotor.needs import check_memory
 from proprotor.plots.mode_motion import ModeMotion
 from proprotor.plots.mode_shape import draw_moving, draw_still, title_of
 from proprotor.plots.style import GREY, LABEL_SIZE, SMALL_SIZE
@@ -75,7 +75,7 @@ def animate_mode(
     path : str or path
         A file that ends in .gif, .html or .mp4. A GIF and a page repeat the cycle forever, and the reader of a page can
         halt at each picture; a film shows the cycle for about 8 s, and needs the program ffmpeg, on the search path or
-        from the package imageio-ffmpeg (extra ``film``).
+        where ``matplotlib.rcParams["animation.ffmpeg_path"]`` says.
     frames : int
         Number of pictures of one cycle, at least 4.
     frames_per_second : float
@@ -102,7 +102,7 @@ def animate_mode(
         given = f"{frames} frames, {frames_per_second} per second, {dpi} dpi"
         raise InputError("frames", given, "must be at least 4, at a speed and a size above zero")
     if ending == ".mp4":
-        _ffmpeg()  # refuses a film without it
+        _check_ffmpeg(path)
     picture = _SIZE[0] * _SIZE[1] * float(dpi) ** 2  # pixels
     each = 1 if ending == ".gif" else 3  # bytes for a pixel that is kept
     check_memory(
@@ -148,16 +148,15 @@ def _page(motion: ModeMotion, frames: Iterator[Image], frames_per_second: float)
 
 def _film(_: ModeMotion, frames: Iterator[Image], frames_per_second: float) -> bytes:
     """Return a film in H.264, which every player knows; whole cycles, as many as the shortest film takes."""
-    import matplotlib
     from matplotlib.animation import FFMpegWriter
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure  # both here, because matplotlib takes long to import
 
     pictures = [np.asarray(frame) for frame in frames]
     height, width, _colours = pictures[0].shape
     figure = Figure(figsize=(width / 100, height / 100), dpi=100)
     shown = figure.figimage(pictures[0])
     cycles = max(1, round(_FILM * frames_per_second / len(pictures)))
-    with matplotlib.rc_context({"animation.ffmpeg_path": _ffmpeg()}), tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "mode.mp4"
         rate: Any = frames_per_second  # typed as a whole number; ffmpeg takes any
         writer = FFMpegWriter(fps=rate, codec="h264")
@@ -168,17 +167,13 @@ def _film(_: ModeMotion, frames: Iterator[Image], frames_per_second: float) -> b
         return file.read_bytes()
 
 
-def _ffmpeg() -> str:
-    """Return the program ffmpeg: that of Matplotlib's settings, or that of the package imageio-ffmpeg."""
-    import matplotlib
+def _check_ffmpeg(path: str | os.PathLike[str]) -> None:
+    """Refuse a film where the program that writes it is missing."""
     from matplotlib.animation import FFMpegWriter
 
-    if FFMpegWriter.isAvailable():
-        return str(matplotlib.rcParams["animation.ffmpeg_path"])
-    need("imageio_ffmpeg", "path", "films, or the program ffmpeg", "film")
-    import imageio_ffmpeg
-
-    return str(imageio_ffmpeg.get_ffmpeg_exe())
+    if not FFMpegWriter.isAvailable():
+        rule = "needs the program ffmpeg, which is not on the search path; .html and .gif need no program"
+        raise InputError("path", str(path), rule)
 
 
 _Writer = Callable[[ModeMotion, Iterator["Image"], float], bytes]

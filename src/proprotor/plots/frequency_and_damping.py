@@ -12,7 +12,7 @@ from proprotor.plots import small_print
 from proprotor.plots.canvas import Limits, along, axes_or_new, note, say_origin, two_axes, write_title
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, written
-from proprotor.plots.mode_lines import draw_modes, name_of_last
+from proprotor.plots.mode_lines import draw_modes, names_of_sweeps
 from proprotor.plots.onsets import boundaries_of
 from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
 from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, UNSTABLE, in_style, white_box
@@ -241,23 +241,30 @@ def _mark_instability(ax: Axes, sweep: Dataset, line: Positions) -> None:
     ax.axhline(0, color="black", linewidth=0.8)
     found = boundaries_of(sweep, damping_percent(sweep))
     _draw_circles(ax, [one.place / line.factor for one in found], [0.0] * len(found))
-    onsets = sorted((one for one in found if one.onset), key=lambda one: one.place)
-    taken = sum(text.get_gid() == _ONSET for text in ax.texts)
-    sweep_name = name_of_last(ax)
-    for row, one in enumerate(onsets[: max(0, _ROWS - taken)], taken):
-        at = one.place / line.factor
-        style: dict[str, Any] = {"textcoords": "offset points", "va": "top", "fontsize": SMALL_SIZE}
-        style |= {"bbox": white_box(0.8) | {"alpha": 0.8}, "annotation_clip": True, "zorder": 4}
-        low, high = ax.get_xlim()
-        right = at < low + _NEAR * (high - low)
-        style |= {"xytext": (5 if right else -5, -4 - 10 * row), "ha": "left" if right else "right"}
-        ax.annotate(
-            f"{', '.join(filter(None, (one.mode, sweep_name)))} {_rounded(at)}", (at, 0), gid=_ONSET, **style
-        )
+    _name_onsets(ax, [one for one in found if one.onset], line)
     if found:
         note(ax, "Circles: boundaries, interpolated between points of the sweep")
     if not any(text.get_text() == "unstable" for text in ax.texts):
         ax.text(0.01, 0.015, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+
+
+def _name_onsets(ax: Axes, onsets: list[Any], line: Positions) -> None:
+    """Write below the line of zero damping which mode becomes unstable where, a row for each mode."""
+    names = names_of_sweeps(ax)
+    earlier = [text for text in ax.texts if text.get_gid() == _ONSET]
+    for text in earlier if len(names) == 2 else ():  # stood there without the name of their sweep
+        mode, _, at = text.get_text().rpartition(" ")
+        text.set_text(f"{mode}, {names[0]} {at}")
+    low, high = ax.get_xlim()
+    shown = sorted(onsets, key=lambda one: one.place)[: max(0, _ROWS - len(earlier))]
+    for row, one in enumerate(shown, len(earlier)):
+        at = one.place / line.factor
+        right = at < low + _NEAR * (high - low)
+        style: dict[str, Any] = {"textcoords": "offset points", "va": "top", "fontsize": SMALL_SIZE}
+        style |= {"bbox": white_box(0.8) | {"alpha": 0.8}, "annotation_clip": True, "zorder": 4}
+        style |= {"xytext": (5 if right else -5, -4 - 10 * row), "ha": "left" if right else "right"}
+        style |= {"parse_math": False, "gid": _ONSET}
+        ax.annotate(f"{', '.join(filter(None, (one.mode, names[-1])))} {_rounded(at)}", (at, 0), **style)
 
 
 def _rounded(value: float) -> str:

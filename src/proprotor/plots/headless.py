@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from proprotor.typing import Axes, Figure
 
@@ -31,4 +31,5 @@ def drawn(draw: Callable[[], Axes | Figure]) -> Iterator[tuple[Axes | Figure, Fi
         if figure is not None:
             pyplot.close(figure)
         if before is not None:
-            matplotlib.use(before)
+            with suppress(ImportError):  # named in the environment, but there is no display for it
+                matplotlib.use(before)

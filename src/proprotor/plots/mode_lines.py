@@ -94,10 +94,10 @@ def named(ax: Axes, sweep: Dataset, lines: dict[str, Line2D], name: str) -> list
     return broad
 
 
-def name_of_last(ax: Axes) -> str:
-    """Return the name of the sweep that was drawn last, where axes hold several; empty for one."""
+def names_of_sweeps(ax: Axes) -> list[str]:
+    """Return the names of the sweeps on axes, where the axes hold several; an empty one for a sweep alone."""
     kept = _sweeps.get(ax, [])
-    return _names(kept)[-1] if len(kept) > 1 else ""
+    return _names(kept) if len(kept) > 1 else [""]
 
 
 def _broad_lines(kept: list[_Drawn]) -> list[Line2D]:

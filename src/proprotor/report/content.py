@@ -54,8 +54,8 @@ _CONVENTIONS = (
     "Flap is positive towards thrust, lag against the rotation, pitch nose up at 0.75 R.",
     "Eigenvalues s = −ζω ± iω√(1 − ζ²). Damping is −Re s/|s| in percent of critical, negative where a mode is "
     "unstable. Frequency is |Im s|; per revolution (/rev) means divided by the rotor speed.",
-    "Airloads are strip theory at cruise inflow, quasi-steady unless the options say that lift lags: no induced "
-    "velocity and no stall.",
+    "Airloads are strip theory, quasi-steady unless the options say that lift lags, without induced velocity unless "
+    "the options say so, and without stall.",
     "A point without trim is left out with its reason; it does not affect the other points.",
 )
 

@@ -52,6 +52,7 @@ Loads and trim:
     trim_solver          Newton's method for all points
     trim_compiled        the steps of a stage of it by the compiled functions
     in_flight            trim and matrices of rotors without any reservation, in one compiled call
+    momentum             the trim with induced velocity by momentum theory
 
 A rotor at an angle to its flight, or in a pull-up:
     around_the_turn      periodic functions at equal steps of azimuth
@@ -72,6 +73,7 @@ from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
+from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
@@ -122,6 +124,7 @@ __all__ = [
     "standard_air",
     "take",
     "trim_target",
+    "with_induced",
     "with_trim",
     "write_c81",
 ]

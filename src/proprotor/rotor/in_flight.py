@@ -37,7 +37,7 @@ def serves_in_flight(balance: Balance, few: BladeSections) -> bool:
     """Return whether one call serves these rotors: all airloads of the consistent equations, dynamic or rigid pitch."""
     options = balance.options
     usual = serves(options.equation_set) and options.airloads == "full" and options.pitch != "coupling"
-    apart = options.reactionless or options.blades_lag or options.is_tilted
+    apart = options.reactionless or options.blades_lag or options.is_tilted or options.has_inflow
     return bool(usual and not apart and balance.free and few is balance.sections and serves_search(balance))
 
 
@@ -66,5 +66,6 @@ def find_in_flight(balance: Balance) -> _InFlight:
         reason=none,
         warning=none.copy(),
         iterations=found.iterations,
+        inflow=np.zeros(balance.points),
     )
     return _InFlight(found.served, trim, found.matrices)

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from proprotor_equations import FIXED_COORDINATES
-from proprotor_equations.coordinates import DIFFERENTIAL, FIXED, REACTIONLESS_PAIR, Coordinate
+from proprotor_equations.coordinates import DIFFERENTIAL, FIXED, FIXED_INFLOW, REACTIONLESS_PAIR, Coordinate
 
 from proprotor.errors import InputError, unprintable
 
@@ -18,9 +18,15 @@ ROTOR_SPEED = (
 )
 MAST_TWIST = "mast twist"
 HALVES = ("symmetric", "antisymmetric")  # of the motion of an aircraft with two mirrored rotors
-_NAMES = {ROTOR_SPEED: "rotor speed", "flap_0": "coning"}  # of the modes of single coordinates
+_NAMES = {
+    ROTOR_SPEED: "rotor speed",
+    "flap_0": "coning",
+    "inflow_0": "uniform inflow",
+}  # of the modes of single coordinates
 _PARTS = {"0": "collective", "d": "differential"}  # of a motion, by the ends of the coordinates' names
 SECOND = ", second root"
+# Coordinates whose rates are induced velocity, in m/s.
+INFLOW = tuple(coordinate._replace(unit="m") for coordinate in FIXED_INFLOW)
 LIFT = "lift"  # the motion of coordinates whose rates are circulation that lags
 LAGS = ("slow", "fast")  # states of lift that lags
 LAG_SHAPES = 2  # functions of the radius in which lift lags; tests/model/test_lift_lag.py has their error
@@ -37,7 +43,7 @@ class Motion(NamedTuple):
     ----------
     names : tuple of str
         One name, or the names of the regressive and the progressive mode. A cyclic pair of which only the rates are
-        states, of lift that lags, has one mode, and so have two states of a control law.
+        states, of lift that lags or of inflow, has one mode, and so have two states of a control law.
     places : tuple of int
         Places of the coordinate, or of the cosine and the sine part, or of two states, among the coordinates of the
         model.
@@ -116,6 +122,11 @@ def is_lift(name: str) -> bool:
     return bool(_LIFT.search(name.rpartition("_")[0]))
 
 
+def is_inflow(name: str) -> bool:
+    """Return whether a coordinate is one of those of the inflow, of any rotor."""
+    return half_of(name)[1].rpartition(" ")[2] in [coordinate.name for coordinate in INFLOW]
+
+
 def is_of_rotor(name: str) -> bool:
     """Return whether a coordinate or mode of a model is one of a rotor, and not of its support."""
     return re.sub(r"\d+", "2", half_of(name)[1]) in _names_of_rotors()
@@ -163,7 +174,7 @@ def _cyclic_names(dof: str) -> tuple[str, ...]:
     """Return the names of the modes of a cyclic motion, by its cosine part."""
     half, own = half_of(dof)
     stem, _, part = own.rpartition("_")
-    if is_lift(own):
+    if is_lift(own) or is_inflow(own):
         beyond = "" if part == "1c" else f", harmonic {part[:-1]}"
         return (f"{half} cyclic {stem}{beyond}".lstrip(),)
     motion = stem if part == "1c" else f"{stem} {part[:-1]}"
@@ -230,5 +241,6 @@ def _names_of_rotors() -> frozenset[str]:
     """Return the coordinates and modes of rotors with any number of blades, each harmonic written as 2."""
     reactionless = (coordinate.name for group in reactionless_groups(6) for coordinate in with_lag(group))
     lift = (coordinate.name for coordinate in lag_coordinates())
-    dofs = (*FIXED_COORDINATES[len(HUB) :], MAST_TWIST, *lift, *reactionless)
+    inflow = (coordinate.name for coordinate in INFLOW)
+    dofs = (*FIXED_COORDINATES[len(HUB) :], MAST_TWIST, *inflow, *lift, *reactionless)
     return frozenset(re.sub(r"\d+", "2", name) for name in (*dofs, *name_list(dofs)))

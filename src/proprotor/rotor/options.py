@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -28,6 +28,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "compressibility": (True, False),
     "section_damping": (None, True, False),
     "lift": ("quasi-steady", "lagged", "lagged-blades", "lagged-wing"),
+    "inflow": ("none", "momentum", "dynamic"),
     "rotor_speed": ("windmilling", "constant"),
     "reactionless": (False, True),
     "cyclic": ("none", "level"),
@@ -83,6 +84,11 @@ class Options:
         Lift that follows the motion at once, or that shed vortices hold back, with states of its own: of blades
         (consistent equations with airloads) and of the wing, if the support has one with airloads; or of one of the
         two. The trim is the same.
+    inflow : "none", "momentum" or "dynamic"
+        Velocity that the rotor's thrust induces, for consistent equations in axial flight: none; by momentum theory in
+        the trim, which perturbations leave as it is; or in the trim and with states that follow thrust and hub moments,
+        uniform and of the first harmonics. Goes with lift of blades that is quasi-steady: lag and inflow are two models
+        of one wake.
     rotor_speed : "windmilling" or "constant"
         Whether the rotor speed perturbation is a degree of freedom.
     drive_train : DriveTrain, optional
@@ -98,7 +104,7 @@ class Options:
         With a shaft angle or a load factor: a swashplate without cyclic pitch, or the cyclic pitch that keeps the
         gimbal level; without a gimbal, the pitch that keeps the blades from flapping once a turn.
     backend : "numpy", "compiled" or "auto"
-        What computes trims, matrices and eigenvalues: NumPy with LAPACK, or compiled functions for whole batches
+        What computes trims, matrices and eigenvalues: NumPy with LAPACK, or compiled functions
         (see `proprotor.compiled`), to rounding the same. "auto" takes these where there is a C compiler, and results
         say which of both it took.
     locked : collection of "flap", "lag", "pitch", "gimbal"
@@ -120,6 +126,7 @@ class Options:
     compressibility: bool = True
     section_damping: bool | None = None
     lift: str = "quasi-steady"
+    inflow: str = "none"
     rotor_speed: str = "windmilling"
     drive_train: DriveTrain | None = None
     reactionless: bool = False
@@ -161,6 +168,8 @@ class Options:
             raise InputError("drive_train", self.drive_train, 'goes with rotor_speed="windmilling"')
         if self.blades_lag:
             self.check_blades_may_lag(self.lift)
+        if self.has_inflow:
+            self._check_inflow()
         for name in ("shaft_angle", "load_factor"):
             check_finite(name, getattr(self, name))
         if np.any(np.abs(self.shaft_angle) > LARGEST_SHAFT_ANGLE):
@@ -172,6 +181,21 @@ class Options:
         if self.is_tilted:
             self._check_tilted()
 
+    def _check_inflow(self) -> None:
+        """Refuse options that induced velocity does not serve."""
+        if self.equation_set != EQUATION_SETS["consistent"]:
+            raise InputError("inflow", self.inflow, 'goes with equations="consistent"')
+        if self.frequencies is not None and self.frequencies.against == "airspeed":
+            raise InputError("inflow", self.inflow, "goes with blade frequencies against the collective")
+        if self.inflow_is_dynamic and self.airloads == "none":
+            raise InputError("inflow", self.inflow, 'goes with airloads="full" or "lift-slope"')
+        if self.blades_lag:
+            rule = (
+                f'goes with lift="quasi-steady" or "lagged-wing", not "{self.lift}": a part of the wake would count '
+                "twice"
+            )
+            raise InputError("inflow", self.inflow, rule)
+
     def _check_tilted(self) -> None:
         """Refuse options that the periodic trim of a rotor at an angle, or in a turn, does not serve."""
         name = "shaft_angle" if np.any(np.not_equal(self.shaft_angle, 0)) else "load_factor"
@@ -179,6 +203,7 @@ class Options:
             "equations": "consistent",
             "airloads": "full",
             "lift": "quasi-steady",
+            "inflow": "none",
             "reactionless": False,
         }
         for other, choice in served.items():
@@ -191,7 +216,7 @@ class Options:
         if self.cyclic == "level" and {"gimbal", "flap"} <= {*self.locked}:
             raise InputError("cyclic", self.cyclic, "needs a gimbal or a flap hinge that is not locked")
 
-    @property
+    @cached_property
     def is_tilted(self) -> bool:
         """Whether the rotor flies at an angle or in a turn, so that its trim is periodic."""
         at_angle = np.any(np.not_equal(self.shaft_angle, 0))
@@ -224,6 +249,16 @@ class Options:
     def wing_lags(self) -> bool:
         """Whether the lift of the support's wing lags, if the support has one."""
         return self.lift in ("lagged", "lagged-wing")
+
+    @property
+    def has_inflow(self) -> bool:
+        """Whether the trim has induced velocity."""
+        return self.inflow != "none"
+
+    @property
+    def inflow_is_dynamic(self) -> bool:
+        """Whether the induced velocity has states."""
+        return self.inflow == "dynamic"
 
     @property
     def equation_set(self) -> EquationSet:

@@ -44,6 +44,8 @@ class Trim:
         Why the trim of a converged point is doubtful; empty if it is not.
     iterations : array of int
         Number of steps taken.
+    inflow : array
+        Induced velocity by momentum theory, against the thrust, m/s; zero without the option `inflow`.
     """
 
     collective: Array
@@ -56,6 +58,7 @@ class Trim:
     reason: Array
     warning: Array
     iterations: Array
+    inflow: Array
 
     @property
     def pitch(self) -> Array:

@@ -88,6 +88,8 @@ def warnings(balance: Balance, here: Linear, thrust: Array, doubts: Mapping[str,
     disk = 2 * density * np.pi * radius**2 * airspeed**2
     share = np.broadcast_to(thrust / np.where(disk > 0, disk, np.inf), (points,))
     still = np.broadcast_to((airspeed == 0) & (density > 0), (points,)) & (thrust > 0)
+    if balance.options.has_inflow:  # nothing is neglected
+        still, share = np.zeros(points, dtype=bool), np.zeros(points)
     masks = {
         "without airspeed the neglected induced velocity is all the inflow": still,
         **_doubtful_blades(balance, here),

@@ -358,7 +358,15 @@ def _settle(
     kind = np.result_type(float, *state.values())
     values = {name: np.full(len(kept), np.nan, dtype=kind) for name in (*UNKNOWNS, "thrust", "torque")}
     warning = np.full(len(kept), "", dtype=object)
-    trim = Trim(**values, converged=kept == "", reason=kept, warning=warning, iterations=iterations)
+    none = np.where(kept == "", 0.0, np.nan)
+    trim = Trim(
+        **values,
+        converged=kept == "",
+        reason=kept,
+        warning=warning,
+        iterations=iterations,
+        inflow=none,
+    )
     if last is None or not len(rows):
         return Settled(trim, rows, {}, {})
     here, quantities = last.before, last.before.quantities
@@ -382,6 +390,7 @@ def _settled(balance: Balance, found: Found) -> Settled:
         reason=np.array([""], dtype=object),
         warning=np.array([""], dtype=object),
         iterations=np.array([found.iterations]),
+        inflow=np.zeros(1),
     )
     return Settled(trim, np.zeros(1, dtype=int), here.quantities, here.segments(balance.sections.sides))
 

@@ -142,14 +142,30 @@ class Brackets:
         pair parts into real roots between the ends, it is followed from the end of the same kind as the trial point,
         since a pair does not tell which of two real roots it becomes.
         """
-        rows, spectrum = np.arange(len(active)), points.spectrum
         nearer = np.argmin(np.abs(self.x[:, active] - points.position), axis=0)
-        starts = self.ends[0].at(active).joined(self.ends[1].at(active))
-        ends, own = np.arange(2 * len(active)), self.place[:, active]
-        step = match_modes(starts.joined(spectrum), ends, 2 * len(active) + np.tile(rows, 2))
-        places, quality = (part[ends, own.ravel()].reshape(own.shape) for part in step)
-        real = starts.values[ends, own.ravel()].reshape(own.shape).imag == 0
-        alike = real == (spectrum.values[rows, places].imag == 0)
+        place, quality, alike = self._followed(active, nearer, points)
+        rest = np.flatnonzero((quality < POOR) | ~alike)  # elsewhere the other end does not matter
+        if len(rest):
+            place[rest] = self._place_by_both(active[rest], nearer[rest], points.at(rest))
+        return place
+
+    def _followed(self, active: Array, end: Array, points: Points) -> tuple[Array, Array, Array]:
+        """Return which state of each trial point an end of its bracket, 0 or 1, becomes.
+
+        Then the quality of this step, and whether both are real or both are one of a pair.
+        """
+        count, rows, values = len(active), np.arange(len(active)), points.spectrum.values
+        starts = self.ends[0].at(active).joined(self.ends[1].at(active)).at(end * count + rows)
+        own = self.place[end, active]
+        step = match_modes(starts.joined(points.spectrum), rows, count + rows)
+        place, quality = (part[rows, own] for part in step)
+        return place, quality, (starts.values[rows, own].imag == 0) == (values[rows, place].imag == 0)
+
+    def _place_by_both(self, active: Array, nearer: Array, points: Points) -> Array:
+        """Return which state of each trial point is the one that crosses, by both ends of its bracket."""
+        rows = np.arange(len(active))
+        followed = [self._followed(active, np.full(len(active), end), points) for end in (0, 1)]
+        places, quality, alike = map(np.stack, zip(*followed, strict=True))
         beyond = self.onset[active].astype(int)
         better = np.where(quality.max(axis=0) < POOR, beyond, quality.argmax(axis=0))
         clear = np.where(quality[nearer, rows] < POOR, better, nearer)

@@ -193,8 +193,9 @@ def _with_differences(points: Points, steps: Steps, level: float) -> Points:
     rate = (steps.later(values) - values[steps.before]) / length
     there = np.take_along_axis(rate, steps.successor.argsort(axis=1), 1)
     sums, weights = np.zeros(values.shape, dtype=complex), np.zeros((len(values), 1))
-    for place, part in ((steps.before, rate), (steps.after, there)):  # the nearer neighbour counts more
-        np.add.at(sums, place, part / length)
-        np.add.at(weights, place, 1 / length)
+    # A point is the start of one step at most, and the end of one; the nearer neighbour counts more.
+    for place, part in ((steps.before, rate), (steps.after, there)):
+        sums[place] += part / length
+        weights[place] += 1 / length
     change = sums / np.where(weights > 0, weights, 1)
     return points._replace(change=change, slope=growth_rate(values, change, level))

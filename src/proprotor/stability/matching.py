@@ -87,11 +87,12 @@ class Spectrum(NamedTuple):
         shapes = None if self.shapes is None else self.shapes[points]
         return self._replace(values=self.values[points], right=self.right[points], shapes=shapes)
 
-    def joined(self, other: Spectrum) -> Spectrum:
-        """Return the points of both spectra."""
-        values, right = (np.concatenate(parts) for parts in zip(self[:2], other[:2], strict=True))
-        both = self.shapes is not None and other.shapes is not None
-        shapes = np.concatenate([self.shapes, other.shapes]) if both else None
+    def joined(self, *others: Spectrum) -> Spectrum:
+        """Return the points of this spectrum and of all others."""
+        every = (self, *others)
+        values, right = (np.concatenate(parts) for parts in zip(*(one[:2] for one in every), strict=True))
+        known = [one.shapes for one in every if one.shapes is not None]
+        shapes = np.concatenate(known) if len(known) == len(every) else None
         return self._replace(values=values, right=right, shapes=shapes)
 
     @property
@@ -306,14 +307,6 @@ def _distance(start: Array, end: Array, scale: Array) -> Array:
     """Return the distance of eigenvalues as a part of `scale`; 0 from or to a state that a point does not have."""
     distance = size_of(start - end) / scale
     return np.where(np.isnan(distance), 0.0, distance)
-
-
-def way_to_zero(start: Array, end: Array) -> Array:
-    """Return the distance from zero to the straight line between two complex numbers."""
-    way = end - start
-    length = way.real**2 + way.imag**2
-    at = np.clip(-(start.conj() * way).real / np.where(length > 0, length, 1), 0, 1)
-    return size_of(start + at * way)
 
 
 def chain(successor: Array, start: Array) -> Array:

@@ -18,8 +18,9 @@ from proprotor_equations import rotor as whole_rotor
 from proprotor.errors import InputError
 from proprotor.model.closed_loop import taken_apart
 from proprotor.model.configuration import Configuration
+from proprotor.model.inflow import with_inflow
 from proprotor.model.lift_lag import lagging_blade, with_lift_lag
-from proprotor.model.linear_model import INPUTS, LinearModel
+from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.mass_at_rest import mass_at_rest
 from proprotor.model.mast import with_mast
 from proprotor.model.mount import mount
@@ -32,7 +33,7 @@ from proprotor.model.stamp import of_model
 from proprotor.model.wing_lift_lag import with_wing_lag
 from proprotor.rotor.airfoil import SectionCoefficients, SectionModel
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.motions import MAST_TWIST, lag_coordinates, wing_lag_names
+from proprotor.rotor.motions import INFLOW, MAST_TWIST, lag_coordinates, wing_lag_names
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.options import Options, parse_options
 from proprotor.rotor.rotor import Rotor
@@ -194,6 +195,8 @@ def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dic
         _airloads(BladeSections.of(own.rotor, shape), quantities, own.choice)
     )
     found = {name: _in_fixed_frame(part, quantities) for name, part in blade.items()}
+    if own.choice.has_inflow and own.choice.airloads != "none":
+        found["inflow"] = _inflow(BladeSections.of(own.rotor, shape), quantities, own, shape)
     if own.choice.blades_lag:
         found["lag of lift"] = _lag_of_lift(BladeSections.of(own.rotor, shape), quantities, own.choice, shape)
     return found | _other_parts(quantities, own.choice)
@@ -201,7 +204,8 @@ def _rotor_parts(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dic
 
 def _quantities(own: _Rotor, model: LinearModel, shape: tuple[int, ...]) -> dict[str, Any]:
     """Return all quantities at the trim of a rotor, arrays flattened over the batch."""
-    given = model_quantities(own.rotor, own.operation, own.choice, model.airspeed, shape)
+    through = model.airspeed + np.broadcast_to(own.trim.inflow, shape)
+    given = model_quantities(own.rotor, own.operation, own.choice, through, shape)
     state = {name: np.broadcast_to(getattr(own.trim, name), shape).reshape(-1) for name in UNKNOWNS}
     trimmed = with_trim(given, own.choice, state)
     return trimmed | couplings(own.choice, trimmed)
@@ -273,6 +277,24 @@ def _airloads(
             yield origin, _Part(zero, *(coupled - alone))
 
 
+def _inflow(
+    sections: BladeSections, quantities: dict[str, Any], own: _Rotor, shape: tuple[int, ...]
+) -> _Part:
+    """Return what induced velocity adds, on the rotor's coordinates and its own: its tilt with the hub, and states."""
+    size, points = len(FIXED_COORDINATES), int(np.prod(shape, dtype=int))
+    every = tuple(name for kept in _COEFFICIENTS.values() for name in kept)
+    kept = _COEFFICIENTS["lift slope"] if own.choice.airloads == "lift-slope" else every
+    damps = bool(own.choice.section_damping)
+    segments = _moments(sections, quantities, own.choice, kept, section_damping=damps)
+    given = {**segments, **quantities, "equations": own.choice.equation_set}
+    gusts = evaluate(multiblade.gust_loads, quantities, evaluate(whole_rotor.blade_airloads, given).gusts)
+    rotor = {name: np.zeros((points, size, len(INPUTS) if name == "B" else size)) for name in "MCKB"}
+    rotor["B"][..., len(SWASHPLATE) :] = gusts
+    induced = np.broadcast_to(own.trim.inflow, shape).reshape(-1)
+    found = with_inflow(rotor, segments, quantities, induced, own.choice)
+    return _Part(*(found[name] for name in "MCK"))
+
+
 def _lag_of_lift(
     sections: BladeSections, quantities: dict[str, Any], choice: Options, shape: tuple[int, ...]
 ) -> _Part:
@@ -331,7 +353,8 @@ def _alone(
 ) -> LinearModel:
     """Return a part of a rotor as a rotor alone, with the twist of its mast; the drive train with its engine."""
     lagging = lag_coordinates() if choice.blades_lag else ()
-    dofs = (*FIXED_COORDINATES, *(coordinate.name for coordinate in lagging))
+    inflow = INFLOW if choice.inflow_is_dynamic else ()
+    dofs = (*FIXED_COORDINATES, *(coordinate.name for coordinate in (*inflow, *lagging)))
     n, points = len(dofs), int(np.prod(shape, dtype=int))
     matrices: dict[str, Any] = {
         kind: np.broadcast_to(_padded(matrix, n), (points, n, n)).reshape(*shape, n, n)

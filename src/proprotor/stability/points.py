@@ -7,7 +7,6 @@ level. Each root has G and its exact derivative at every point, from matrices a 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -54,11 +53,11 @@ class Points(NamedTuple):
         parts = {name: own[rows] for name, own in self._asdict().items() if name != "spectrum"}
         return Points(spectrum=self.spectrum.at(rows), **parts)
 
-    def joined(self, other: Points) -> Points:
-        """Return the points of both."""
-        spectrum = self.spectrum.joined(other.spectrum)
+    def joined(self, *others: Points) -> Points:
+        """Return these points and all others."""
+        spectrum = self.spectrum.joined(*(other.spectrum for other in others))
         parts = {
-            name: np.concatenate([own, getattr(other, name)])
+            name: np.concatenate([own, *(getattr(other, name) for other in others)])
             for name, own in self._asdict().items()
             if name != "spectrum"
         }
@@ -130,7 +129,7 @@ def solve_points(
     counts = {part.points.growth.shape[1] for part in parts if part.points is not None}
     if len(counts) > 1:  # a shaft holds the azimuth in some parts alone
         return solve_points(models, line, position, level, forgiving, max(counts), plain)
-    return reduce(_together, parts)
+    return _together(parts)
 
 
 def _parts(line: Array, count: int) -> list[Array]:
@@ -142,12 +141,11 @@ def _parts(line: Array, count: int) -> list[Array]:
     return np.split(np.arange(len(line)), cuts)
 
 
-def _together(one: Solved, other: Solved) -> Solved:
-    """Return the points of two results as one."""
-    texts = (np.concatenate(parts) for parts in zip(one[1:], other[1:], strict=True))
-    if one.points is None or other.points is None:
-        return Solved(other.points if one.points is None else one.points, *texts)
-    return Solved(one.points.joined(other.points), *texts)
+def _together(parts: list[Solved]) -> Solved:
+    """Return the points of some results as one."""
+    texts = (np.concatenate(own) for own in zip(*(part[1:] for part in parts), strict=True))
+    found = [part.points for part in parts if part.points is not None]
+    return Solved(found[0].joined(*found[1:]) if found else None, *texts)
 
 
 def _solved(
@@ -162,10 +160,11 @@ def _solved(
     if not works.any():
         return Solved(None, works, *_texts(model, states))
     part, some = some_points(model, works), spectrum.at(works)
-    found = refined_near(part, some, level)
+    modes = some.all_modes
+    found = refined_near(part, modes, level)
     mass, damping, stiffness = (np.broadcast_to(one, model.K.shape)[works] for one in changes)
-    modes = some.all_modes._replace(values=found.values)
-    change = eigenvalue_change(part, (mass, damping, stiffness), modes)
+    moved = modes._replace(values=found.values)
+    change = eigenvalue_change(part, (mass, damping, stiffness), moved)
     spectrum = some._replace(values=found.values)
     points = _points(line[works], position[works], spectrum, change, found.error, level)
     return Solved(points, works, *_texts(model, states))

@@ -81,15 +81,16 @@ def refined(model: LinearModel, modes: Modes) -> _Refined:
     return _Refined(np.where(better, values + correction, values), error)
 
 
-def refined_near(model: LinearModel, spectrum: Spectrum, level: float = 0.0) -> _Refined:
+def refined_near(model: LinearModel, modes: Modes, level: float = 0.0) -> _Refined:
     """Return roots of points (k,) that work, refined where one is near a level; elsewhere unchanged, with no error.
 
-    No error reaches farther than a millionth of the largest root.
+    Modes are all modes of the points. No error reaches farther than a millionth of the largest root.
     """
-    values, error = spectrum.values.copy(), np.zeros(spectrum.values.shape)
+    values, error = modes.values.copy(), np.zeros(modes.values.shape)
     near = _any_near(growth(values, level), values)
     if near.any():
-        values[near], error[near] = refined(some_points(model, near), spectrum.at(near).all_modes)
+        some = Modes(*(part[near] for part in modes))
+        values[near], error[near] = refined(some_points(model, near), some)
     return _Refined(values, error)
 
 

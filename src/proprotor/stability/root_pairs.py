@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from proprotor.stability.cubic import band, bend, hermite
-from proprotor.stability.matching import size_of, way_to_zero
+from proprotor.stability.matching import size_of
 from proprotor.stability.root_error import growth
 from proprotor.stability.steps import Ends, Steps
 from proprotor.typing import Array
@@ -50,15 +50,24 @@ def may_meet(first: Array, last: Array, way: Array, state: Array, block: Array) 
     """
     own, end, reach = (np.take_along_axis(part, state, 1)[:, :, None] for part in (first, last, way))
     others, ends = first[:, None, :], last[:, None, :]
-    apart, later = own - others, end - ends
-    one, other = size_of(apart), size_of(later)
-    near, far = np.minimum(one, other), np.maximum(one, other)
-    near_each_other = (way_to_zero(apart, later) < _APPROACH * near) | (near < _MEETING * far)
+    near, far, nearest = _squares_of_distance(own - others, end - ends)
+    near_each_other = (nearest < _APPROACH**2 * near) | (near < _MEETING**2 * far)
     exchanged = size_of(ends - own) + size_of(end - others)
     within_reach = exchanged <= _WITHIN_REACH * (reach + way[:, None, :])
     others_alone = state[:, :, None] != np.arange(first.shape[1])
     same_block = block[state][:, :, None] == block
     return np.asarray((near_each_other | within_reach) & others_alone & same_block)
+
+
+def _squares_of_distance(apart: Array, later: Array) -> tuple[Array, Array, Array]:
+    """Return the squares of the shorter, of the longer, and of the least distance on the straight way between both."""
+    x, y, u, v = apart.real, apart.imag, later.real, later.imag
+    one, other = x * x + y * y, u * u + v * v
+    along, across = u - x, v - y
+    length = along * along + across * across
+    length[length == 0] = 1
+    at = np.clip(-(x * along + y * across) / length, 0, 1)
+    return np.minimum(one, other), np.maximum(one, other), (x + at * along) ** 2 + (y + at * across) ** 2
 
 
 def _partners(ends: Ends, row: Array, state: Array) -> Array:
@@ -195,9 +204,14 @@ def _places(steps: Steps, chain: Array, here: Array, state: Array) -> Array:
 
 def _lagrange(x: Array, wanted: Array) -> Array:
     """Return the share (k, m, any) of each of k points, x (k, m), in polynomials through them at places (m, any)."""
+    ways = wanted - x[:, :, None]
     share = np.ones((len(x), *wanted.shape))
+    for one in range(1, len(x)):  # the product of all ways before, then of all that follow
+        np.multiply(share[one - 1], ways[one - 1], out=share[one])
+    after = np.ones(wanted.shape)
     with np.errstate(all="ignore"):
-        for one in range(len(x)):
-            for other in set(range(len(x))) - {one}:
-                share[one] *= (wanted - x[other][:, None]) / (x[one] - x[other])[:, None]
+        for one in range(len(x) - 1, -1, -1):
+            apart = np.prod(x[one] - np.delete(x, one, axis=0), axis=0)
+            share[one] *= after / apart[:, None]
+            after *= ways[one]
     return share

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from proprotor.errors import InputError, check_known
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
 from proprotor.model.state_space import LOADS, StateSpace
-from proprotor.rotor.motions import HUB, half_of, is_lift
+from proprotor.rotor.motions import HUB, half_of, is_inflow, is_lift
 from proprotor.stability.root_error import roots
 from proprotor.typing import Array
 from proprotor.units import values_in_si
@@ -129,5 +129,6 @@ def unit_of_output(output: str) -> str:
     if name in LOADS:
         return "N" if name.startswith("force") else "N*m"
     per = next((unit for ending, unit in _PER.items() if name.endswith(ending)), "")
-    length = name.split(" ")[0] in HUB[:3] or is_lift(name.removesuffix(" rate"))
+    motion = name.removesuffix(" rate")
+    length = name.split(" ")[0] in HUB[:3] or is_lift(motion) or is_inflow(motion)
     return ("m" if length else "rad") + per

@@ -16,7 +16,7 @@ from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import HALVES, HUB, LAGS_PER_BLADE, half_of, wing_lag_names
+from proprotor.rotor.motions import HALVES, HUB, INFLOW, LAGS_PER_BLADE, half_of, wing_lag_names
 from proprotor.rotor.options import parse_options
 from proprotor.study.batch import Analysis, Batch
 from proprotor.study.description import as_attribute, described, with_deck_units
@@ -216,6 +216,7 @@ def _most_coordinates(case: Case, options: Mapping[str, Any]) -> int:
     own = len(FIXED_COORDINATES) - len(HUB) + 1 + 3 * (blades - 3)  # and the twist of the mast
     choice = parse_options(case.model_options(options))
     own += LAGS_PER_BLADE * blades * choice.blades_lag
+    own += len(INFLOW) * choice.inflow_is_dynamic
     lift = case.support.wing if choice.wing_lags else None
     of_wing = 0 if lift is None else len(wing_lag_names(lift.symmetry))
     return len(case.support.names) + of_wing + own * (2 if isinstance(case.support, Airframe) else 1)

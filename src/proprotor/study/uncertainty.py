@@ -157,7 +157,8 @@ def sobol_indices(
         A variable with one number for each design. Base samples with a design without a number are left out, at most
         5 % of all.
     confidence : float
-        Level of the intervals, dimensionless, from 0 to 1.
+        Level of the intervals, dimensionless, from 0 to 1. The bootstrap takes base samples for independent draws;
+        those of a Sobol sequence are spread more evenly, so that the true shares lie within more often than that.
     resamples : int
         Number of resamples of the bootstrap that finds the intervals.
     beyond : "left out" or "limit"

@@ -67,6 +67,7 @@ VARIABLES: dict[str, dict[str, _Variable]] = {
         "elastic_pitch": _Variable("trim elastic pitch", "rad"),
         "thrust": _Variable("thrust of the airloads on the rotor", "N"),
         "torque": _Variable("torque of the airloads, positive where it speeds the rotor up", "N*m"),
+        "inflow": _Variable("induced velocity against the thrust, zero without the option inflow", "m/s"),
     },
     "flutter": {name: one._replace(on=_DESIGN) for name, one in _FLUTTER.items()},
     "vectors": {

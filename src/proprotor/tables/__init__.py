@@ -8,6 +8,7 @@ sweep_summary         numbers of a sweep: frequency, damping, unstable ranges, l
 sweep_table           a sweep as lines for a terminal, as records and as sentences
 sensitivity_summary   sensitivities as records
 study_summary         a study in a few numbers
+sobol_table           shares of the variance of a flutter speed, with confidence intervals
 study_table           a study as records: one for each design, with its inputs in the units of the deck
 percentiles           percentiles of a sample as text, with bounds where designs lie beyond the airspeeds
 robust_table          the worst flutter speed of a box: records, cells and sentences
@@ -40,6 +41,7 @@ __all__ = [
     "response_table",
     "robust_table",
     "sensitivity_summary",
+    "sobol_table",
     "study_summary",
     "study_table",
     "sweep_summary",

@@ -10,6 +10,7 @@ import numpy as np
 from proprotor.errors import InputError
 from proprotor.model.doubts import reasons_for_doubt
 from proprotor.study.uncertainty import distribution
+from proprotor.tables.sobol_table import sobol_summary
 from proprotor.typing import DataArray, Dataset
 
 
@@ -26,7 +27,8 @@ def study_summary(results: Dataset) -> dict[str, Any]:
     dict
         title; points, how many failed and why, the most frequent reason first, and how many are doubtful and why;
         reservations; of flutter speeds how many were found and are doubtful, how many lie above or below the airspeeds,
-        the lowest and the highest in m/s; without flutter speeds how many points are unstable, and the lowest damping.
+        the lowest and the highest in m/s, of a sample percentiles, of a Saltelli sample shares of the variance; without
+        flutter speeds how many points are unstable, and the lowest damping.
     """
     reasons = _most_frequent(results.reason)
     summary: dict[str, Any] = {
@@ -39,7 +41,7 @@ def study_summary(results: Dataset) -> dict[str, Any]:
         "reservations": results.attrs["reservations"],
     }
     if "flutter_speed" in results:
-        return summary | _of_flutter_speeds(results) | _percentiles(results)
+        return summary | _of_flutter_speeds(results) | _percentiles(results) | sobol_summary(results)
     if summary["failed"] == summary["points"]:
         return summary
     return summary | {
