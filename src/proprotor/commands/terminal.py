@@ -10,6 +10,7 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
+from proprotor.commands.waiting import is_terminal
 from proprotor.errors import printable
 
 _PIPED = 80  # characters of a line in a file or a pipe
@@ -24,7 +25,7 @@ class PlainConsole(Console):
 
     def __init__(self) -> None:
         told = os.environ.get("COLUMNS", "").isdigit()
-        width = None if told or sys.stdout.isatty() else _PIPED
+        width = None if told or is_terminal(sys.stdout) else _PIPED
         super().__init__(markup=False, highlight=False, emoji=False, width=width)
 
     def print(self, *objects: Any, **more: Any) -> None:

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import Lock, Timer
-from typing import Any
+from typing import Any, TextIO
 
 _PATIENCE = 0.5  # seconds without a sign of life, from the start of the command on
 _SOON = 0.1  # seconds that a step may take after a long silence, so that a short one does not flicker
@@ -89,7 +89,12 @@ def waiting(step: str) -> Iterator[Callable[[str], None]]:
         _SPINNER.end()
 
 
+def is_terminal(stream: TextIO | None) -> bool:
+    """Return whether a standard stream is a terminal; one that was closed before the start of Python is None."""
+    return stream is not None and stream.isatty()
+
+
 def _watched() -> bool:
     """Return whether the error stream is a terminal that can move its cursor, or TTY_COMPATIBLE says so."""
     told = os.environ.get("TTY_COMPATIBLE")
-    return told == "1" if told in ("0", "1") else sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+    return told == "1" if told in ("0", "1") else is_terminal(sys.stderr) and os.environ.get("TERM") != "dumb"
