@@ -159,7 +159,7 @@ def test_a_rotor_that_brakes_more_than_its_air_could_without_inflow_has_a_trim(a
 
 
 def test_in_a_vacuum_there_is_no_inflow():
-    """A given collective has a trim without air, but states of the inflow would have no mass; air beside it has both."""
+    """A given collective has a trim without air, but inflow would have no mass; a point with air beside it has both."""
     case = pp.load_case("xv15-uncoupled")
     operation = replace(case.operation, density=np.array([0.0, DENSITY]), trim={"collective": 0.7})
     both = {
