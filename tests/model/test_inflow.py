@@ -135,14 +135,42 @@ def independent(case, collective):
             case.airspeed + induced
         )
 
-    return brentq(left, -0.49 * case.airspeed, 40.0, xtol=1e-13)
+    return brentq(left, -0.4999 * case.airspeed, 40.0, xtol=1e-13)
 
 
-@pytest.mark.parametrize("collective", [0.6, 0.8, 0.95])
-def test_the_trim_meets_the_stream_tube(collective):
-    case = Case(seed=45, airspeed=100.0, trim={"collective": collective})
+@pytest.mark.parametrize(
+    ("airspeed", "collective"),
+    [(100.0, 0.6), (100.0, 0.8), (100.0, 0.95), (100.0, 0.1), (20.0, 0.95), (20.0, 0.1), (5.0, 0.05)],
+)
+def test_the_trim_meets_the_stream_tube(airspeed, collective):
+    case = Case(seed=45, airspeed=airspeed, trim={"collective": collective})
     found = case.model(inflow="momentum", **RIGID).trim
     assert float(found.inflow) == pytest.approx(independent(case, collective), abs=1e-10)
+
+
+@pytest.mark.parametrize(("airspeed", "collective"), [(20.0, 0.09), (20.0, 0.05), (20.0, 0.02), (5.0, 0.01)])
+def test_a_rotor_that_brakes_more_than_its_air_could_without_inflow_has_a_trim(airspeed, collective):
+    """The thrust without induced velocity has no root of momentum theory; the smaller thrust with it has one."""
+    case = Case(seed=45, airspeed=airspeed, trim={"collective": collective})
+    area = np.pi * case.air.radius**2
+    assert case.model(**RIGID).trim.thrust < -DENSITY * area * airspeed**2 / 2
+    found = case.model(inflow="momentum", **RIGID).trim
+    assert float(found.inflow) == pytest.approx(independent(case, collective), abs=1e-10)
+
+
+def test_in_a_vacuum_there_is_no_inflow():
+    """A given collective has a trim without air, but inflow would have no mass; a point with air beside it has both."""
+    case = pp.load_case("xv15-uncoupled")
+    operation = replace(case.operation, density=np.array([0.0, DENSITY]), trim={"collective": 0.7})
+    both = {
+        inflow: pp.rotor_model(case.rotor, operation, 150.0, inflow=inflow).trim
+        for inflow in ("momentum", "dynamic")
+    }
+    assert both["momentum"].converged.tolist() == [True, True]
+    assert both["momentum"].inflow[0] == 0
+    assert both["dynamic"].converged.tolist() == [False, True]
+    assert "vacuum" in both["dynamic"].reason[0]
+    assert both["dynamic"].inflow[1] == both["momentum"].inflow[1]
 
 
 @pytest.mark.parametrize(
@@ -505,7 +533,7 @@ def test_states_have_units(xv15):
     ],
 )
 def test_what_has_no_inflow_is_refused_before_anything_is_computed(xv15, options, field, said, monkeypatch):
-    monkeypatch.setattr(sys.modules["proprotor.model.rotor_model"], "_settled", None)
+    monkeypatch.setattr(sys.modules["proprotor.model.rotor_model"], "model_quantities", None)
     with pytest.raises(InputError, match=said) as caught:
         xv15.linearize("250 kt", **options)
     assert caught.value.field == field

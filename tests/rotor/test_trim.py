@@ -541,8 +541,8 @@ OPTIONS = ("pitch", "airloads", "compressibility", "rotor_speed", "locked")
 
 def test_an_unknown_option_is_told_the_known_ones():
     with pytest.raises(pp.InputError) as error:
-        pp.rotor_model(rotor(), OPERATION, 80.0, inflow="uniform")
-    assert error.value.field == "inflow"
+        pp.rotor_model(rotor(), OPERATION, 80.0, wake="free")
+    assert error.value.field == "wake"
     assert all(name in str(error.value) for name in OPTIONS)
 
 

@@ -32,6 +32,7 @@ _NO_FLOW = (
     "momentum theory has no induced velocity for this thrust: the mass flow V + λ of the harmonics or V + 2λ of the "
     "uniform inflow would not be positive"
 )
+_NO_AIR = "no dynamic inflow in a vacuum: there is no air that could move"
 _NOT_FOUND = "no trim with induced velocity found: Newton did not converge"
 
 
@@ -59,6 +60,8 @@ def with_induced(
     whole = _Rotor(sections, few, quantities, options, target, points)
     real = whole.real
     induced, reason = real.induced()
+    if options.inflow_is_dynamic:
+        reason[(reason == "") & real.in_vacuum()] = _NO_AIR
     if whole.is_complex:
         _, slope, _ = real.left(induced)
         left, *_ = whole.left(induced, slope=False)
@@ -124,6 +127,10 @@ class _Rotor:
         reason[going] = _NOT_FOUND
         return found, reason
 
+    def in_vacuum(self) -> Array:
+        """Return the points (points,) without air, whose inflow could have no states."""
+        return np.asarray(self._each("density") == 0)
+
     def left(self, induced: Array, slope: bool = True) -> tuple[Array, Array, Array]:
         """Return g (points,), its slope with the induced velocity, and reasons of points without a trim."""
         step = 1j * _STEP if slope else 0.0
@@ -148,7 +155,10 @@ class _Rotor:
     def _first_guess(self) -> Array:
         """Return the root of momentum theory for the thrust that is asked for, or that is there without inflow.
 
-        Power that is put in stands for the thrust of a rotor without losses, which has one without airspeed too.
+        Power that is put in stands for the thrust of a rotor without losses, which has one without airspeed too. A
+        thrust without a root is the end of it only where this thrust is asked for. At a given collective or power
+        induced velocity changes the thrust, and Newton starts without any: as what is left curves downwards, the
+        steps go down to the root and not past it.
         """
         airspeed, load = self._each("airspeed"), self._spread(self.target.load) * self._each("n_blades")
         disk = 2 * self._each("density") * np.pi * self._each("radius") ** 2
@@ -162,7 +172,9 @@ class _Rotor:
         else:
             power = -load * self._each("rotor_speed")
             thrust = power / (airspeed + np.cbrt(np.maximum(power, 0.0) / disk))
-        return np.asarray((np.sqrt(airspeed**2 + 4 * thrust / disk) - airspeed) / 2)
+        root = np.asarray((np.sqrt(airspeed**2 + 4 * thrust / disk) - airspeed) / 2)
+        asked = self.target.finds_collective and self.target.row == THRUST
+        return root if asked else np.where(np.isnan(root), 0.0, root)
 
     def _each(self, name: str) -> Array:
         return self._spread(self.quantities[name])
