@@ -29,8 +29,10 @@ def page_is_wanted(description: str) -> bool:
 
 def markdown(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     """Return the lines of a table."""
-    lines = (headings, ["---"] * len(headings), *rows)
-    return ["|" + "|".join(f" {cell} " if cell else " " for cell in line) + "|" for line in lines]
+    first, *others = (
+        "|" + "|".join(f" {cell} " if cell else " " for cell in line) + "|" for line in (headings, *rows)
+    )
+    return [first, "|" + "---|" * len(headings), *others]
 
 
 def with_table(text: str, mark: str, lines: Sequence[str]) -> str:

@@ -28,7 +28,7 @@ def test_a_mark_names_a_benchmark_that_writes_the_table_below_it(page, mark):
 def test_a_table_is_replaced_and_nothing_else():
     page = f"before\n\n<!-- one -->\n\nold\n\n{END}\n\n<!-- two -->\n\nkept\n\n{END}\n"
     changed = with_table(page, "one", markdown(("a", "b"), [("1", "")]))
-    assert changed == page.replace("old", "| a | b |\n| --- | --- |\n| 1 | |")
+    assert changed == page.replace("old", "| a | b |\n|---|---|\n| 1 | |")
     with pytest.raises(ValueError, match="no place for a table"):
         with_table(page, "three", ["new"])
 
@@ -48,7 +48,12 @@ STATED = [
         "symmetric chord",
     ),
     ("docs/theory/tilted-flight.md", r"\| 0 \| ([\d.]+) \| beam", "xv15", "beam"),
-    ("docs/xv15.md", r"\| 8,000 \| > 520 \| \*\*(\d+)\*\*", "xv15-uncoupled", "chord"),
+    (
+        "docs/xv15.md",
+        r"`xv15-uncoupled` \| springs of Table 1 \| 8,000 .* chord (\d+) \|",
+        "xv15-uncoupled",
+        "chord",
+    ),
     ("docs/xv15.md", r"\| `xv15-wing` \| beam [\d.]+ \| beam ([\d.]+)", "xv15-wing", "beam"),
     ("docs/xv15-effects.md", r"\| one airfoil, as the deck is \| ([\d.]+) beam", "xv15", "beam"),
     ("docs/xv15-effects.md", r"\| all of them \| ([\d.]+) beam", "xv15-sections", "beam"),
