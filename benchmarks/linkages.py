@@ -1,6 +1,7 @@
 """Signs of the linkages that turn a blade as it moves, in a drawing, and their effect on the XV-15 in knots.
 
-python -m benchmarks.linkages
+python -m benchmarks.linkages           # prints the table and writes the drawing
+python -m benchmarks.linkages --page    # and writes the table into docs/theory/linkages.md
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.page_table import markdown, page_is_wanted, write_table
 from proprotor.files.output import write_whole
 from proprotor.typing import Array
 from proprotor.units import KNOT
@@ -88,17 +90,28 @@ def changes(deck: str) -> Iterator[tuple[str, dict[str, str]]]:
         yield name, {"rotor.cyclic_control_stiffness": f"{times * stiffness!r} N*m/rad"}
 
 
-def main() -> None:
-    table = Table("change", *(f"{deck}, KTAS" for deck in DECKS))
+def speeds() -> dict[str, list[str]]:
+    """Return the flutter speed and its mode for each change, a text for each deck."""
     cells: dict[str, list[str]] = {}
     for deck in DECKS:
         for name, fields in changes(deck):
             point = pp.load_case(deck, fields).flutter_point(SCAN)
             cells.setdefault(name, []).append(f"{point.speed / KNOT:.1f} {point.mode}")
-    for name, speeds in cells.items():
-        table.add_row(name, *speeds)
+    return cells
+
+
+def main() -> None:
+    page = page_is_wanted(__doc__)
+    found = speeds()
+    table = Table("change", *(f"{deck}, KTAS" for deck in DECKS))
+    for name, cells in found.items():
+        table.add_row(name, *cells)
     Console(width=120, highlight=False).print(table)
     write_figure()
+    if page:
+        rows = [(name, *cells) for name, cells in found.items()]
+        lines = markdown(["change", *(f"`{deck}`" for deck in DECKS)], rows)
+        write_table("theory/linkages.md", "python -m benchmarks.linkages --page", lines)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Centre of gravity and aerodynamic centre beside the pitch axis: a drawing of the signs, and the XV-15 in knots.
 
-    OPENBLAS_NUM_THREADS=1 python -m benchmarks.offsets
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.offsets           # prints the table and writes the drawing
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.offsets --page    # and writes the table into docs/theory/offsets.md
 
 The quarter chord is that of the published stations, aft of the elastic axis, which stands for the pitch axis. Where
 the centre of gravity lies is not published: it is assumed on the axis, on the quarter chord, or a little beside it.
@@ -20,6 +21,7 @@ from rich.table import Table
 
 import proprotor as pp
 from benchmarks.linkages import section
+from benchmarks.page_table import markdown, page_is_wanted, write_table
 from proprotor.deck.file import read_tables
 from proprotor.files.output import write_whole
 from proprotor.units import KNOT
@@ -95,8 +97,8 @@ def write_figure() -> None:
     plt.close(figure)
 
 
-def main() -> None:
-    table = Table("places on the chord", *(f"{name}, KTAS" for name in DECKS))
+def rows() -> Iterator[tuple[str, ...]]:
+    """Yield each change with the flutter speed and its mode for each deck."""
     with tempfile.TemporaryDirectory() as folder:
         for name, change in CHANGES.items():
             cells = []
@@ -105,9 +107,20 @@ def main() -> None:
                 path.write_text(deck(base, *change), encoding="utf-8")
                 point = pp.load_case(path).flutter_point(SCAN)
                 cells.append("none" if point is None else f"{point.speed / KNOT:.1f} {point.mode}")
-            table.add_row(name, *cells)
+            yield (name, *cells)
+
+
+def main() -> None:
+    page = page_is_wanted(__doc__)
+    found = list(rows())
+    table = Table("places on the chord", *(f"{name}, KTAS" for name in DECKS))
+    for row in found:
+        table.add_row(*row)
     Console(width=140, highlight=False).print(table)
     write_figure()
+    if page:
+        lines = markdown(["places on the chord", *(f"`{name}`" for name in DECKS)], found)
+        write_table("theory/offsets.md", "python -m benchmarks.offsets --page", lines)
 
 
 if __name__ == "__main__":

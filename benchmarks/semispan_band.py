@@ -1,6 +1,7 @@
 """The XV-15's first boundaries on a semispan wing: which wing, which lag and which control stiffness give what.
 
-    python -m benchmarks.semispan_band
+    python -m benchmarks.semispan_band           # prints the tables
+    python -m benchmarks.semispan_band --page    # and writes them into docs/xv15.md
 
 Published semispan flutter speeds stand beside the table. Nothing is tuned: each wing, each set of blade frequencies and
 each control stiffness has a source of its own.
@@ -17,6 +18,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.page_table import markdown, page_is_wanted, write_table
 from benchmarks.paper_figures.wing_modes import OF_THE_ROTOR, WingModes
 from benchmarks.xv15_boundary import SPEEDS, as_text
 
@@ -88,10 +90,14 @@ def of_the_wing() -> Iterator[tuple[str, str, dict[str, float]]]:
             yield altered, lag, boundaries("xv15", settings, options)
 
 
-def _table(title: str, first: tuple[str, ...]) -> Table:
-    table = Table(title=title)
-    for name in (*first, "beam", "chord", "torsion", "rotor", "first of the wing"):
-        table.add_column(name)
+COLUMNS = ("beam", "chord", "torsion", "rotor", "first of the wing")
+INPUTS, STRUCTURE = ("wing", "lag", "K_θ, ft lbf/rad"), ("`xv15`", "lag")
+
+
+def _table(title: str, first: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
+    table = Table(*first, *COLUMNS, title=title)
+    for row in rows:
+        table.add_row(*row)
     return table
 
 
@@ -105,21 +111,22 @@ def _cells(found: Mapping[str, float]) -> Iterator[str]:
 
 def main() -> None:
     """Print both tables and the published speeds."""
-    console = Console(width=150, highlight=False)
-    table = _table(
-        "Wing, lag and control stiffness; kt, section damping on", ("wing", "lag", "K_θ, ft lbf/rad")
-    )
-    for wing, lag, stiffness, found in of_inputs():
-        table.add_row(wing, lag, f"{stiffness:,}", *_cells(found))
-    console.print(table)
-    table = _table("The wing as built, what its structure assumes; K_θ 8,000", ("xv15", "lag"))
-    for altered, lag, found in of_the_wing():
-        table.add_row(altered, lag, *_cells(found))
-    console.print(table)
+    page, console = page_is_wanted(__doc__), Console(width=150, highlight=False)
+    inputs = [
+        (f"`{wing}`", lag, f"{stiffness:,}", *_cells(found)) for wing, lag, stiffness, found in of_inputs()
+    ]
+    structure = [(altered, lag, *_cells(found)) for altered, lag, found in of_the_wing()]
+    console.print(_table("Wing, lag and control stiffness; kt, section damping on", INPUTS, inputs))
+    title = "The wing as built, what its structure assumes; K_θ 8,000"
+    console.print(_table(title, STRUCTURE, structure))
     for what in (WINGS, CONTROL_STIFFNESS):
         for name, meaning in what.items():
             console.print(f"{name}: {meaning}")
     console.print("Published: " + ", ".join(f"{name} {speed} kt" for name, speed in PUBLISHED.items()))
+    if page:
+        mark = "python -m benchmarks.semispan_band --page"
+        write_table("xv15.md", f"{mark}: inputs", markdown((*INPUTS, *COLUMNS), inputs))
+        write_table("xv15.md", f"{mark}: structure", markdown((*STRUCTURE, *COLUMNS), structure))
 
 
 if __name__ == "__main__":

@@ -17,20 +17,19 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 from unittest import mock
 
 import numpy as np
 
 import proprotor as pp
+from benchmarks.page_table import write_table
 from benchmarks.study import POINTS, SPEEDS, best, lines, matrices, plan
 from proprotor.compiled.library import library, why_not
 from proprotor.study.study import study
 from proprotor.study.variables import DEFAULT_QUANTITIES
 
-PAGE = Path(__file__).parents[1] / "docs" / "studies.md"
-BEGIN, END = "<!-- python -m benchmarks.study_table --page -->", "<!-- end of the table -->"
+MARK = "python -m benchmarks.study_table --page"
 CALLERS = ("eigenvalues", "plans", "motion", "bounds", "shapes")  # of the library, in `proprotor.compiled`
 VECTORS = (*DEFAULT_QUANTITIES, "vectors")
 
@@ -107,14 +106,6 @@ def table(points: int) -> list[str]:
     ]
 
 
-def write_page(lines_of_table: list[str]) -> None:
-    """Put the table between its two marks in the page."""
-    before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
-    text = "\n".join([f"{before}{BEGIN}", "", *lines_of_table, "", f"{END}{after}"])
-    PAGE.write_text(text, encoding="utf-8", newline="\n")
-
-
 def main() -> None:
     """Print the table, and write it; a second start of the program has one BLAS thread."""
     if os.environ.get("OPENBLAS_NUM_THREADS") != "1":
@@ -131,7 +122,7 @@ def main() -> None:
     found = table(given.points)
     print("\n".join(found))
     if given.page:
-        write_page(found)
+        write_table("studies.md", MARK, found)
 
 
 if __name__ == "__main__":

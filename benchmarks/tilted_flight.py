@@ -1,12 +1,14 @@
 """Flutter of the XV-15 against shaft angle and load factor, and what averaging over azimuth changes of it.
 
-python -m benchmarks.tilted_flight
+    python -m benchmarks.tilted_flight           # prints the tables and writes the figure
+    python -m benchmarks.tilted_flight --page    # and writes the tables into docs/theory/tilted-flight.md
 
 Boundaries are those of the average; beside each, the change of the damping of its mode by the Floquet exponents.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,6 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.page_table import markdown, page_is_wanted, write_table
 from proprotor.files.output import write_whole
 from proprotor.typing import Array
 from proprotor.units import KNOT
@@ -23,6 +26,7 @@ FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tilted-flig
 SCAN = "280:400:20kt"
 ANGLES = (0.0, 2.0, 4.0, 6.0, 8.0, 10.0)  # deg
 LOADS = (-1.0, 0.0, 1.0, 2.0, 2.5)
+COLUMNS = ("flutter, KTAS", "mode", "change of its damping ratio", "largest change of any")
 LABELS = {"none": "no cyclic pitch: the gimbal tilts", "level": "cyclic pitch keeps the gimbal level"}
 
 
@@ -60,16 +64,30 @@ def against_load(case: pp.Case) -> list[Boundary]:
     return [boundary(case, **({"load_factor": load} if load != 1 else {})) for load in LOADS]
 
 
+def rows(at: tuple[float, ...], found: list[Boundary]) -> Iterator[tuple[str, ...]]:
+    """Yield boundaries as the cells of a table."""
+    for value, one in zip(at, found, strict=True):
+        yield (f"{value:g}", f"{one.speed / KNOT:.1f}", one.mode, f"{one.change:+.5f}", f"{one.worst:.4f}")
+
+
 def table(title: str, name: str, at: tuple[float, ...], found: list[Boundary]) -> Table:
     """Return boundaries as a table."""
     whole = Table(title=title)
-    for heading in (name, "flutter, KTAS", "mode", "change of its damping ratio", "largest change of any"):
+    for heading in (name, *COLUMNS):
         whole.add_column(heading, justify="left" if heading == "mode" else "right")
-    for value, one in zip(at, found, strict=True):
-        whole.add_row(
-            f"{value:g}", f"{one.speed / KNOT:.1f}", one.mode, f"{one.change:+.5f}", f"{one.worst:.4f}"
-        )
+    for row in rows(at, found):
+        whole.add_row(*row)
     return whole
+
+
+def write_page(angles: dict[str, list[Boundary]], loads: list[Boundary]) -> None:
+    """Put the tables into their page: without and with cyclic pitch, and the turn of the hub."""
+    named = {"gimbal tilts": ("shaft angle, deg", ANGLES, angles["none"])}
+    named["gimbal level"] = ("shaft angle, deg", ANGLES, angles["level"])
+    named["turn of the hub"] = ("load factor", LOADS, loads)
+    for part, (name, at, found) in named.items():
+        mark = f"python -m benchmarks.tilted_flight --page: {part}"
+        write_table("theory/tilted-flight.md", mark, markdown((name, *COLUMNS), rows(at, found)))
 
 
 def write_figure(angles: dict[str, list[Boundary]], loads: list[Boundary]) -> None:
@@ -96,13 +114,15 @@ def _knots(found: list[Boundary]) -> Array:
 
 def main() -> None:
     """Print both tables and write the figure."""
-    case, console = pp.load_case("xv15"), Console()
+    page, case, console = page_is_wanted(__doc__), pp.load_case("xv15"), Console()
     angles = {cyclic: against_angle(case, cyclic) for cyclic in LABELS}
     loads = against_load(case)
     for cyclic, found in angles.items():
         console.print(table(f"XV-15, {LABELS[cyclic]}", "shaft angle, deg", ANGLES, found))
     console.print(table("XV-15, turn of the hub", "load factor", LOADS, loads))
     write_figure(angles, loads)
+    if page:
+        write_page(angles, loads)
 
 
 if __name__ == "__main__":

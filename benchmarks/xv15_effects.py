@@ -1,6 +1,7 @@
 """What blade data, places on the chord, linkages, lag of lift and inflow are worth on the XV-15, in knots.
 
-    OPENBLAS_NUM_THREADS=1 python -m benchmarks.xv15_effects
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.xv15_effects           # prints the table
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.xv15_effects --page    # and writes it into docs/xv15-effects.md
 
 Each row changes one thing of the decks xv15, a semispan wing, and xv15-aircraft, and tells the first boundary and how
 far it is from that of the deck as it is. Airfoils are those of the deck xv15-sections. The blade of stations is the
@@ -25,6 +26,7 @@ import proprotor as pp
 from benchmarks import offsets
 from benchmarks import xv15_blade as stations
 from benchmarks.bell_points import CONFIGURATIONS, SCAN, SYMMETRIES
+from benchmarks.page_table import markdown, page_is_wanted, write_table
 from benchmarks.xv15_sections import CHANGES, settings
 from proprotor.rotor.hinged_blade import HingedBlade, hinged_blade
 from proprotor.units import KNOT
@@ -73,7 +75,7 @@ def with_places(deck: str, published: bool, aft: float | None) -> pp.Case:
 def effects(blade: HingedBlade) -> Iterator[tuple[str, Effect]]:
     """Yield each change with its title."""
     yield "as the deck is", Effect()
-    yield "airfoils by region, all of xv15-sections", Effect(settings(CHANGES["all of them"]))
+    yield "airfoils by region, all of `xv15-sections`", Effect(settings(CHANGES["all of them"]))
     yield "blade from stations", Effect(rotor=blade.numbers)
     kept = {name: value for name, value in blade.numbers.items() if name != "control_stiffness"}
     yield "the same with K_θ of the deck", Effect(rotor=kept)
@@ -131,12 +133,17 @@ def rows(blade: HingedBlade) -> Iterator[tuple[str, ...]]:
 
 
 def main() -> None:
-    console = Console(width=140, highlight=False)
+    page = page_is_wanted(__doc__)
     blade = hinged_blade(stations.blade(stations.calibrated()), stations.OMEGA, stations.PITCH)
     table = Table("", "semispan, kt", *(f"aircraft, {mode}, kt" for mode in SYMMETRIES))
-    for row in rows(blade):
+    found = list(rows(blade))
+    for row in found:
         table.add_row(*row)
-    console.print(table)
+    Console(width=140, highlight=False).print(table)
+    if page:
+        headings = ("change", "semispan `xv15`", *(f"aircraft, {mode}" for mode in SYMMETRIES))
+        mark = "python -m benchmarks.xv15_effects --page"
+        write_table("xv15-effects.md", mark, markdown(headings, found))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Rotor frequencies of the XV-15 against airspeed, beside what the paper and the tests say.
 
-    python -m benchmarks.xv15_frequencies
+    python -m benchmarks.xv15_frequencies           # prints the tables
+    python -m benchmarks.xv15_frequencies --page    # and writes two of them into docs/xv15.md
 
 The rotor stands on a rigid hub, with the springs of AIAA-2002-1604 and with the blade frequencies that Bell calculated;
 frequencies are in the fixed frame, per revolution at 458 rpm.
@@ -8,16 +9,20 @@ frequencies are in the fixed frame, per revolution at 458 rpm.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks.page_table import markdown, page_is_wanted, write_table
 from benchmarks.paper_figures.blade_state import on_rigid_hub
 from proprotor.units import KNOT
 
 DECKS = ("xv15-uncoupled", "xv15-bell-frequencies")
 SPEEDS = np.arange(50, 451, 50) * KNOT
+MODES_OF_THE_PAGE = ("low cyclic lag", "coning")
 MODES = ("coning", "low cyclic lag", "low gimbal", "high gimbal")
 STATEMENTS = (
     "AIAA-2002-1604: low cyclic lag from about 0.8 to 0.2 per rev (Fig. 14); coning 1.85; gimbal 1.0355.",
@@ -41,10 +46,29 @@ def print_case(console: Console, case: pp.Case) -> None:
             console.print(table)
 
 
+def page_rows(case: pp.Case) -> Iterator[tuple[str, ...]]:
+    """Yield lag and coning in a vacuum and with airloads, with free rotor speed."""
+    frequencies = [
+        on_rigid_hub(case, SPEEDS, **case.model_options({"airloads": airloads, "rotor_speed": "windmilling"}))
+        for airloads in ("none", "full")
+    ]
+    columns = [found[mode] for mode in MODES_OF_THE_PAGE for found in frequencies]
+    for speed, *values in zip(SPEEDS / KNOT, *columns, strict=True):
+        yield (f"{speed:.0f}", *(f"{value:.2f}" for value in values))
+
+
 def main() -> None:
+    page = page_is_wanted(__doc__)
     console = Console(width=120)
     for name in DECKS:
-        print_case(console, pp.load_case(name))
+        case = pp.load_case(name)
+        print_case(console, case)
+        if page:
+            headings = [
+                f"{mode} {air}" for mode in MODES_OF_THE_PAGE for air in ("in a vacuum", "with airloads")
+            ]
+            mark = f"python -m benchmarks.xv15_frequencies --page: {name}"
+            write_table("xv15.md", mark, markdown(("kt", *headings), page_rows(case)))
     for statement in STATEMENTS:
         console.print(statement)
 

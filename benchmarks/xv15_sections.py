@@ -1,6 +1,7 @@
 """What the airfoils along the XV-15's blade do to its boundaries: each of them alone, and all together.
 
-    python -m benchmarks.xv15_sections
+    python -m benchmarks.xv15_sections           # prints the table
+    python -m benchmarks.xv15_sections --page    # and writes it into docs/xv15-effects.md
 
 The numbers are those of the deck xv15-sections, put into the decks of the semispan wing and of the aircraft.
 """
@@ -14,6 +15,7 @@ from rich.table import Table
 
 import proprotor as pp
 from benchmarks.bell_points import CONFIGURATIONS, SYMMETRIES, boundaries, first_crossings
+from benchmarks.page_table import markdown, page_is_wanted, write_table
 from proprotor.deck.file import read_tables
 from proprotor.deck.template import toml
 from proprotor.units import KNOT
@@ -57,12 +59,24 @@ def aircraft(fields: tuple[str, ...]) -> Iterator[float]:
         yield first_crossings(found, symmetry, configuration.band(symmetry))[0].airspeed
 
 
-def main() -> None:
-    table = Table("", "semispan, kt", *(f"aircraft, {mode}, kt" for mode in SYMMETRIES))
+def rows() -> Iterator[tuple[str, ...]]:
+    """Yield each change with the boundaries of the semispan wing and of the aircraft."""
     for name, fields in CHANGES.items():
         speed, mode = semispan(fields)
-        table.add_row(name, f"{speed:.1f} {mode}", *(f"{one:.1f}" for one in aircraft(fields)))
+        yield (name, f"{speed:.1f} {mode}", *(f"{one:.1f}" for one in aircraft(fields)))
+
+
+def main() -> None:
+    page = page_is_wanted(__doc__)
+    found = list(rows())
+    table = Table("", "semispan, kt", *(f"aircraft, {mode}, kt" for mode in SYMMETRIES))
+    for row in found:
+        table.add_row(*row)
     Console(width=120).print(table)
+    if page:
+        headings = ("airfoils", "semispan `xv15`, kt", *(f"aircraft, {mode}, kt" for mode in SYMMETRIES))
+        mark = "python -m benchmarks.xv15_sections --page"
+        write_table("xv15-effects.md", mark, markdown(headings, found))
 
 
 if __name__ == "__main__":
