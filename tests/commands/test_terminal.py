@@ -7,6 +7,7 @@ import struct
 import subprocess
 import sys
 import termios
+import threading
 from pathlib import Path
 
 import pytest
@@ -125,6 +126,21 @@ def test_nothing_is_analysed_in_silence(command, monkeypatch):
     assert told[0] == "Starting"
     assert silent == [] or command == "study"  # which has a bar of its own
     assert not spinner.steps
+
+
+def test_a_step_that_ends_as_the_spinner_starts_leaves_no_trace(monkeypatch, capsys):
+    """The timer may fire at any moment: here its thread goes on only once the last step is over."""
+    spinner, failed = waiting._Spinner(), []
+    monkeypatch.setattr(waiting, "_PATIENCE", 0.0)
+    monkeypatch.setattr(waiting, "_SOON", 0.0)
+    monkeypatch.setattr(threading, "excepthook", failed.append)
+    show, over = spinner._show, threading.Event()
+    monkeypatch.setattr(spinner, "_show", lambda: over.wait(60) and show())
+    spinner.begin("A short step")
+    assert spinner.timer is not None
+    monkeypatch.setattr(spinner.timer, "cancel", over.set)  # it has fired already
+    spinner.end()
+    assert not failed and spinner.bar is None and capsys.readouterr().err == ""
 
 
 def test_a_pipe_has_the_same_lines_however_wide_the_terminal_is():
