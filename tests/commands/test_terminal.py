@@ -148,6 +148,39 @@ def test_a_pipe_has_the_same_lines_however_wide_the_terminal_is():
     assert max(map(len, text.splitlines())) <= 80 and "\x1b" not in text and "\r" not in text
 
 
+def test_the_worst_design_fits_the_terminal():
+    words = ["boundary", "xv15-uncoupled", "--worst-of", "rotor.precone=2:3 deg", "--scan", "300:420:60ktas"]
+    lines = CliRunner().invoke(main, words, env={"COLUMNS": "80"}).stdout.splitlines()
+    assert any("designs were analysed" in line for line in lines)
+    assert [line for line in lines if len(line) > 80] == []
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        (
+            "boundary",
+            "xv15-uncoupled",
+            "--against",
+            "rotor_speed=400:500:100 rpm",
+            "--scan",
+            "300:420:60ktas",
+        ),
+        (
+            "map",
+            "xv15-uncoupled",
+            "--x",
+            "airspeed=200:300:50kt",
+            "--y",
+            "operation.rotor_speed=400:500:50 rpm",
+        ),
+    ],
+)
+def test_the_title_tells_no_rotor_speed_where_it_varies(words):
+    told = CliRunner().invoke(main, words, env={"COLUMNS": "200"}).stdout
+    assert told.startswith("XV-15 with three uncoupled wing modes\n") and "458 rpm" not in told
+
+
 def test_a_wide_terminal_is_used():
     wide = on_a_terminal(200, "flutter", "xv15", piped=False)
     line = next(line for line in wide.splitlines() if "408." in line)

@@ -176,7 +176,7 @@ def _document(found: Dataset, axes: tuple[_Axis, _Axis], airspeed: float | None)
 
 
 def _print(case: Case, found: Dataset, axes: tuple[_Axis, _Axis]) -> None:
-    output.print_head(case, found.attrs)
+    output.print_head(case, found.attrs, [axis.path for axis in axes])
     x, y = axes
     growth = found.growth.transpose(y.path, x.path).values
     state = np.where(np.isnan(growth), "failed", np.where(growth > 0, "unstable", "stable"))
