@@ -269,8 +269,11 @@ def exit_without(results: object) -> None:
         raise click.exceptions.Exit(1)
 
 
-def with_origin(axes: Axes, case: Case) -> Axes:
-    """Write the case of a plot and the reservations about its numbers beneath the plot; return the axes."""
+def with_origin(axes: Axes, case: Case, varied: Collection[str] = ()) -> Axes:
+    """Write the case of a plot and the reservations about its numbers beneath the plot; return the axes.
+
+    `varied` are the inputs that have other values than those of the case.
+    """
     from proprotor.plots import rests_on
 
-    return rests_on(axes, case, f"{heading(case)}.")
+    return rests_on(axes, case, f"{heading(case, varied)}.")

@@ -95,7 +95,9 @@ def stability_map(
         document=lambda: output.about(case, request) | _document(found, axes, airspeed),
         table=lambda: _print(case, found, axes),
         csv=lambda: csv_of(records := _records(found, axes), list(records[0]), found.attrs),
-        plot=lambda: output.with_origin(plot_stability_map(found, units=units, points=measured), case),
+        plot=lambda: output.with_origin(
+            plot_stability_map(found, units=units, points=measured), case, list(values)
+        ),
     )
     output.exit_without(np.isfinite(found.growth.values).any())
 
