@@ -181,6 +181,16 @@ def test_the_title_tells_no_rotor_speed_where_it_varies(words):
     assert told.startswith("XV-15 with three uncoupled wing modes\n") and "458 rpm" not in told
 
 
+def test_the_list_of_commands_fits_the_terminal():
+    lines = CliRunner().invoke(main, ["--help"], env={"COLUMNS": "80"}).stdout.splitlines()
+    assert lines and [line for line in lines if len(line) > 80] == []
+
+
+def test_a_title_that_has_the_rotor_speed_does_not_tell_it_twice():
+    told = CliRunner().invoke(main, ["flutter", "wrats-770-on", "--scan", "100:200:50kt"]).stdout
+    assert told.splitlines()[0] == "WRATS model, 770 rpm, on downstop"
+
+
 def test_a_wide_terminal_is_used():
     wide = on_a_terminal(200, "flutter", "xv15", piped=False)
     line = next(line for line in wide.splitlines() if "408." in line)

@@ -40,11 +40,17 @@ _MODE_WIDTH = 14
 
 
 def heading(case: Case, varied: Collection[str] = ()) -> str:
-    """Return the title of a case and its rotor speed, as they stand above its tables; no rotor speed that is varied."""
-    title = case.title or case.name
-    if "operation.rotor_speed" in varied:
-        return title
-    return f"{title}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
+    """Return the title of a case and its rotor speed, as they stand above its tables.
+
+    The rotor speed is left out where it varies, and where the title has it.
+    """
+    title, speed = case.title or case.name, rotor_speed_in_words(case)
+    return title if "operation.rotor_speed" in varied or speed in title else f"{title}, {speed}"
+
+
+def rotor_speed_in_words(case: Case) -> str:
+    """Return the rotor speed of a case in revolutions per minute, with the unit."""
+    return f"{case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
 
 
 @dataclass(frozen=True, eq=False)
