@@ -145,8 +145,8 @@ def _print(table: BladeStations, found: HingedBlade, compared: Any) -> None:
     out.print("Torque per turn at 0.75 R, by the way the torque is spread:")
     output.print_table(("spread", "N m/rad"), pitch_stiffness_rows(found), text=("spread",))
     out.print(
-        "Elastic and hinged blade at the ends of the collective range, and the largest difference in the whole range, in "
-        "brackets where it is not judged:"
+        "Elastic and hinged blade at the ends of the collective range, and the largest difference in the whole range, "
+        "in brackets where it is not judged:"
     )
     output.print_table(comparison_columns(compared), comparison_rows(compared), text=("quantity",))
     if table.radius[0] > 0:

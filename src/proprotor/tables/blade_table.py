@@ -113,7 +113,8 @@ def records(compared: BladeComparison) -> list[dict[str, Any]]:
 def verdict(compared: BladeComparison) -> Iterator[str]:
     """Yield sentences on whether a hinged blade is a good model of this blade."""
     if not compared.poor:
-        yield f"A hinged blade is a good model: all judged quantities are within {100 * GOOD:.0f} % over the whole range."
+        within = f"all judged quantities are within {100 * GOOD:.0f} % over the whole range"
+        yield f"A hinged blade is a good model: {within}."
         return
     worst = ", ".join(f"{one.name} ({100 * one.difference:.0f} %)" for one in compared.poor)
     yield f"A hinged blade is no good model of this blade in: {worst}."
