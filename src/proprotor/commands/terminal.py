@@ -24,7 +24,8 @@ class PlainConsole(Console):
 
     def __init__(self) -> None:
         told = os.environ.get("COLUMNS", "").isdigit()
-        width = None if told or sys.stdout.isatty() else _PIPED
+        at_terminal = sys.stdout is not None and sys.stdout.isatty()  # None where a shell has closed it
+        width = None if told or at_terminal else _PIPED
         super().__init__(markup=False, highlight=False, emoji=False, width=width)
 
     def print(self, *objects: Any, **more: Any) -> None:
