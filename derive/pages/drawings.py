@@ -135,7 +135,7 @@ def axes_and_motions() -> Figure:
         strict=True,
     ):
         _arrow(ax, on_page(0 * axis), on_page(1.35 * axis), name)
-    azimuth = np.deg2rad(50)
+    azimuth = np.deg2rad(72)
     for place in range(3):
         i, j, k = axes_of_blade(azimuth + place * 2 * np.pi / 3)
         _line(ax, on_page([0 * j, j]), color="black" if place == 0 else GREY)
@@ -146,7 +146,7 @@ def axes_and_motions() -> Figure:
     turning = on_page([0.5 * axes_of_blade(angle)[1] for angle in angles])
     _line(ax, turning, linewidth=1)
     _arrow(ax, turning[-2], turning[-1])
-    x, y = 1.2 * turning[15]
+    x, y = 0.7 * turning[15]
     ax.text(x, y, "ψ, Ω", ha="center", va="center")
     return figure
 
@@ -156,6 +156,8 @@ def hinges() -> Figure:
     figure, (side, top) = _page(2, 9.0, 3.4)
     still, raised = blade(), blade({kin.q["flap"]: FLAP})
     for ax, of_axis in ((side, 2), (top, 0)):
+        ax.set_xlim(-0.15, 1.35)
+        ax.set_ylim(-0.45, 0.6)
         ax.plot([0, 1.1], [0, 0], color=GREY, linewidth=0.8, linestyle="--")
         ax.plot(0, 0, "+", color="black", markersize=12)
         _line(ax, still[:, [1, of_axis]], color=GREY, linestyle=":")

@@ -7,6 +7,7 @@ import struct
 import subprocess
 import sys
 import termios
+import threading
 from pathlib import Path
 
 import pytest
@@ -127,9 +128,67 @@ def test_nothing_is_analysed_in_silence(command, monkeypatch):
     assert not spinner.steps
 
 
+def test_a_step_that_ends_as_the_spinner_starts_leaves_no_trace(monkeypatch, capsys):
+    """The timer may fire at any moment: here its thread goes on only once the last step is over."""
+    spinner, failed = waiting._Spinner(), []
+    monkeypatch.setattr(waiting, "_PATIENCE", 0.0)
+    monkeypatch.setattr(waiting, "_SOON", 0.0)
+    monkeypatch.setattr(threading, "excepthook", failed.append)
+    show, over = spinner._show, threading.Event()
+    monkeypatch.setattr(spinner, "_show", lambda: over.wait(60) and show())
+    spinner.begin("A short step")
+    assert spinner.timer is not None
+    monkeypatch.setattr(spinner.timer, "cancel", over.set)  # it has fired already
+    spinner.end()
+    assert not failed and spinner.bar is None and capsys.readouterr().err == ""
+
+
 def test_a_pipe_has_the_same_lines_however_wide_the_terminal_is():
     (text,) = {on_a_terminal(columns, "flutter", "xv15", piped=True) for columns in (40, 200)}
     assert max(map(len, text.splitlines())) <= 80 and "\x1b" not in text and "\r" not in text
+
+
+def test_the_worst_design_fits_the_terminal():
+    words = ["boundary", "xv15-uncoupled", "--worst-of", "rotor.precone=2:3 deg", "--scan", "300:420:60ktas"]
+    lines = CliRunner().invoke(main, words, env={"COLUMNS": "80"}).stdout.splitlines()
+    assert any("designs were analysed" in line for line in lines)
+    assert [line for line in lines if len(line) > 80] == []
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        (
+            "boundary",
+            "xv15-uncoupled",
+            "--against",
+            "rotor_speed=400:500:100 rpm",
+            "--scan",
+            "300:420:60ktas",
+        ),
+        (
+            "map",
+            "xv15-uncoupled",
+            "--x",
+            "airspeed=200:300:50kt",
+            "--y",
+            "operation.rotor_speed=400:500:50 rpm",
+        ),
+    ],
+)
+def test_the_title_tells_no_rotor_speed_where_it_varies(words):
+    told = CliRunner().invoke(main, words, env={"COLUMNS": "200"}).stdout
+    assert told.startswith("XV-15 with three uncoupled wing modes\n") and "458 rpm" not in told
+
+
+def test_the_list_of_commands_fits_the_terminal():
+    lines = CliRunner().invoke(main, ["--help"], env={"COLUMNS": "80"}).stdout.splitlines()
+    assert lines and [line for line in lines if len(line) > 80] == []
+
+
+def test_a_title_that_has_the_rotor_speed_does_not_tell_it_twice():
+    told = CliRunner().invoke(main, ["flutter", "wrats-770-on", "--scan", "100:200:50kt"]).stdout
+    assert told.splitlines()[0] == "WRATS model, 770 rpm, on downstop"
 
 
 def test_a_wide_terminal_is_used():

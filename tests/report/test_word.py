@@ -58,11 +58,22 @@ def test_the_tables_are_those_of_the_document(file, document):
     tables = blocks_of(document, Table)
     assert len(file.tables) == len(tables) > 8
     for written, meant in zip(file.tables, tables, strict=True):
-        rows = [[cell.text for cell in row.cells] for row in written.rows]
+        rows = [
+            [cell.text.replace("\N{NO-BREAK SPACE}%", " %") for cell in row.cells] for row in written.rows
+        ]
         assert rows == [list(meant.columns), *map(list, meant.rows)]
         assert written.rows[0]._tr.trPr.find(f"{W}tblHeader") is not None
         widths = [column.width.mm for column in written.columns]
         assert sum(widths) <= 178.1 and min(widths) > 3
+
+
+def test_the_bands_of_tables_are_pale_enough_to_read_small_print_on(file):
+    for table in file.tables:
+        shades = [band.get(f"{W}fill") for band in table.style.element.iter(f"{W}shd")]
+        assert shades and all(min(bytes.fromhex(shade)) > 0xE0 for shade in shades)
+        assert not any(
+            "theme" in name for band in table.style.element.iter(f"{W}shd") for name in band.attrib
+        )
 
 
 def test_every_paragraph_of_text_is_there(file, document):

@@ -13,6 +13,7 @@ from proprotor.errors import InputError
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.hinged_blade import HingedBlade, hinged_blade
 from proprotor.tables.blade_table import (
+    comparison_columns,
     comparison_rows,
     deck_lines,
     number_rows,
@@ -143,9 +144,11 @@ def _print(table: BladeStations, found: HingedBlade, compared: Any) -> None:
     output.print_table(("field", "value", "unit"), number_rows(found), text=("field", "unit"))
     out.print("Torque per turn at 0.75 R, by the way the torque is spread:")
     output.print_table(("spread", "N m/rad"), pitch_stiffness_rows(found), text=("spread",))
-    out.print("Elastic and hinged blade at the ends of the collective range:")
-    columns = ("quantity", "elastic", "hinged", "elastic", "hinged", "difference")
-    output.print_table(columns, comparison_rows(compared), text=("quantity",))
+    out.print(
+        "Elastic and hinged blade at the ends of the collective range, and the largest difference in the whole range, "
+        "in brackets where it is not judged:"
+    )
+    output.print_table(comparison_columns(compared), comparison_rows(compared), text=("quantity",))
     if table.radius[0] > 0:
         out.print(
             f"The blade is held at its first station, {table.radius[0]:.4g} m; what is inboard has no mass here."

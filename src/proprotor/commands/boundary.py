@@ -193,8 +193,8 @@ def _document(found: Dataset, records: Sequence[dict[str, Any]], level: float) -
 
 
 def _print(case: Case, shown: Dataset, left_out: Sequence[str], unit: str) -> None:
-    output.print_head(case, shown.attrs)
     path, records = input_of(shown), boundary_records(shown, unit)
+    output.print_head(case, shown.attrs, (path,))
     out = output.console()
     out.print(f"Boundaries against {path}" + (f" ({unit})" if unit else "") + ":")
     columns = (unit or "value", KTAS, KEAS, "Hz", "/rev", "mode", "kind", "")

@@ -37,7 +37,7 @@ _SUMMARIES = {
     "identify": "Find frequency and damping in the record of a free decay.",
     "calibrate": "Fit inputs of a deck to test points.",
     "mac": "Compare measured modes of a structure with those of a model.",
-    "report": "Write all results on a case as one page, HTML or PDF.",
+    "report": "Write all results on a case as one page: HTML, PDF or DOCX.",
     "explore": "Move sliders on the inputs, and see the modes follow.",
     "study": "Analyse many designs: grids, lists and samples.",
     "export": "Write the equations at an airspeed for Nastran or MATLAB.",
@@ -143,20 +143,20 @@ def main() -> None:
 
     \b
     Try:
-      proprotor cases                               the bundled cases
-      proprotor sweep xv15 --speed 50:400:5kt       frequency and damping of each mode
-      proprotor flutter xv15                        flutter speed and all other boundaries
-      proprotor boundary --help                     boundaries over altitude, rotor speed or an input
-      proprotor report xv15                         all results on one page, HTML or PDF
-      proprotor explore xv15                        a page with sliders on the inputs
-      proprotor new my.toml                         a commented deck of your own
-      proprotor describe rotor.precone              what a field of a deck means
-      proprotor sweep --help                        every option of a command
+      proprotor cases                           the bundled cases
+      proprotor sweep xv15 --speed 50:400:5kt   frequency and damping of modes
+      proprotor flutter xv15                    flutter speed, all boundaries
+      proprotor boundary --help                 boundaries over another input
+      proprotor report xv15                     all results: HTML, PDF or DOCX
+      proprotor explore xv15                    a page with sliders on inputs
+      proprotor new my.toml                     a commented deck of your own
+      proprotor describe rotor.precone          what a field of a deck means
+      proprotor sweep --help                    every option of a command
 
     A deck is the TOML file that describes a case. --set changes a field of the deck for one run; --json prints
     everything that a command finds. Each command lists its options with --help.
 
     \b
-    To have the shell complete commands and fields, in bash (likewise in zsh and fish):
+    To have the shell complete commands and fields, in bash (or zsh or fish):
       eval "$(_PROPROTOR_COMPLETE=bash_source proprotor)"
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
@@ -151,10 +151,13 @@ def console() -> PlainConsole:
     return PlainConsole()
 
 
-def print_head(case: Case, found: Mapping[Any, Any]) -> None:
-    """Print the case, the options that are no defaults, and the reservations about the numbers."""
+def print_head(case: Case, found: Mapping[Any, Any], varied: Collection[str] = ()) -> None:
+    """Print the case, the options that are no defaults, and the reservations about the numbers.
+
+    `varied` are the inputs that have other values than those of the case.
+    """
     out = console()
-    for line in (heading(case), *stamp.unusual_options(found), *reservations(case), ""):
+    for line in (heading(case, varied), *stamp.unusual_options(found), *reservations(case), ""):
         out.print(line)
 
 
@@ -266,8 +269,11 @@ def exit_without(results: object) -> None:
         raise click.exceptions.Exit(1)
 
 
-def with_origin(axes: Axes, case: Case) -> Axes:
-    """Write the case of a plot and the reservations about its numbers beneath the plot; return the axes."""
+def with_origin(axes: Axes, case: Case, varied: Collection[str] = ()) -> Axes:
+    """Write the case of a plot and the reservations about its numbers beneath the plot; return the axes.
+
+    `varied` are the inputs that have other values than those of the case.
+    """
     from proprotor.plots import rests_on
 
-    return rests_on(axes, case, f"{heading(case)}.")
+    return rests_on(axes, case, f"{heading(case, varied)}.")

@@ -95,7 +95,9 @@ def stability_map(
         document=lambda: output.about(case, request) | _document(found, axes, airspeed),
         table=lambda: _print(case, found, axes),
         csv=lambda: csv_of(records := _records(found, axes), list(records[0]), found.attrs),
-        plot=lambda: output.with_origin(plot_stability_map(found, units=units, points=measured), case),
+        plot=lambda: output.with_origin(
+            plot_stability_map(found, units=units, points=measured), case, list(values)
+        ),
     )
     output.exit_without(np.isfinite(found.growth.values).any())
 
@@ -176,7 +178,7 @@ def _document(found: Dataset, axes: tuple[_Axis, _Axis], airspeed: float | None)
 
 
 def _print(case: Case, found: Dataset, axes: tuple[_Axis, _Axis]) -> None:
-    output.print_head(case, found.attrs)
+    output.print_head(case, found.attrs, [axis.path for axis in axes])
     x, y = axes
     growth = found.growth.transpose(y.path, x.path).values
     state = np.where(np.isnan(growth), "failed", np.where(growth > 0, "unstable", "stable"))

@@ -300,9 +300,9 @@ def _print_shares(found: Mapping[str, Any]) -> None:
         output.print_table(SOBOL_COLUMNS, cells, text=SOBOL_COLUMNS[:1])
         half = f"± is half of an interval of {100 * found['confidence of the shares']:g} % confidence"
         treatment = found["treatment of the shares"]
-        output.console().print(f"Shares of the variance; {half}. {treatment}", soft_wrap=True)
+        output.console().print(f"Shares of the variance; {half}. {treatment}")
     elif WHY_NOT in found:
-        output.console().print(f"No shares of the variance: {found[WHY_NOT]}.", soft_wrap=True)
+        output.console().print(f"No shares of the variance: {found[WHY_NOT]}.")
 
 
 def _print_percentiles(results: Dataset) -> None:

@@ -42,7 +42,8 @@ class _Spinner:
 
     def end(self) -> None:
         """End the present step, and the spinner with the last one."""
-        self.steps.pop()
+        with self.lock:
+            self.steps.pop()
         if self.steps:
             self._tell()
             return
@@ -59,6 +60,8 @@ class _Spinner:
 
         columns = (rich.SpinnerColumn("line"), rich.TextColumn("{task.description}", markup=False))
         with self.lock:
+            if not self.steps:  # the last one ended while rich was imported
+                return
             console = Console(stderr=True)
             self.bar = rich.Progress(*columns, rich.TimeElapsedColumn(), console=console, transient=True)
             self.bar.add_task(self.steps[-1])

@@ -75,7 +75,7 @@ def _document(found: Dataset, records: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _print(case: Case, found: Dataset, records: list[dict[str, Any]]) -> None:
-    output.print_head(case, found.attrs)
+    output.print_head(case, found.attrs, found.input.values.tolist())
     output.print_table(COLUMNS, map(robust_cells, records), text=("input", "unit", "side"))
     if found.sizes["first"] > 1:
         output.print_table(
@@ -87,4 +87,4 @@ def _print(case: Case, found: Dataset, records: list[dict[str, Any]]) -> None:
     out.print(robust_verdict(found), style="bold")
     output.print_footnotes(filter(None, [found.warning.item()]))
     for line in robust_counts(found):
-        out.print(line, soft_wrap=True)
+        out.print(line)

@@ -75,10 +75,15 @@ def marked(number: str, warning: object) -> str:
     return f"{number}{MARK}" if warning else number
 
 
+def position(value: float) -> str:
+    """Return a position in a sentence: from 1 on with two decimals at most, below with six digits."""
+    return f"{round(value, 2) if abs(value) >= 1 else value:g}"
+
+
 def footnotes(doubts: Iterable[Doubt], unit: str, factor: float = 1.0) -> Iterator[str]:
     """Yield a sentence on each doubt, with positions in a unit; `factor` is the size of the unit in SI."""
     for doubt in doubts:
-        low, high = (f"{float(f'{end / factor:.10g}'):g} {unit}".strip() for end in doubt[1:])
+        low, high = (f"{position(end / factor)} {unit}".strip() for end in doubt[1:])
         where = f"at {low}" if low == high else f"from {low} to {high}"
         yield f"Doubtful {where}: {doubt.text}."
 

@@ -40,7 +40,7 @@ from proprotor.tables.sensitivity_summary import (
     sensitivity_records,
     sensitivity_row,
 )
-from proprotor.tables.sweep_table import SweepTable, heading
+from proprotor.tables.sweep_table import SweepTable, rotor_speed_in_words
 from proprotor.typing import Array
 from proprotor.units import airspeed_unit, speed_factor
 
@@ -117,7 +117,7 @@ def report_document(
     failures = (f"Not analysed {airspeeds}: {reason}." for airspeeds, _, reason in _failed(table))
     return Document(
         title=case.title or case.name,
-        subtitle=f"Case {case.name}, {heading(case).rpartition(', ')[2]}",
+        subtitle=f"Case {case.name}, {rotor_speed_in_words(case)}",
         date=date,
         verdict=tuple(verdict(case, found, margin_at, unit, factor)),
         caution=(*reservations(case), *case.warnings, *_doubts(found, table, unit, factor), *failures),

@@ -17,6 +17,9 @@ _BLUE, _RED = "0072B2", "B34700"  # the bars beside the verdict and beside warni
 _MOST, _LONGEST = 200, 40  # characters of a cell, and of a word, that count for the width of a column
 _CHARACTER, _BESIDE = 1.6, 3  # mm of a character of a table, and characters of the space between two cells
 _SMALL, _SMALLER, _MANY = 8, 7, 9  # points of a table, and of one with many columns; how many are many
+_TABLE = "Light Shading"  # the style of tables
+_PADDING = "20"  # above and below the text of a cell, in twentieths of a point
+_BAND = "F2F2F2"  # every other row of a table, pale enough to read small print on
 _FONT = "Arial"  # which every text processor has, or one of the same widths
 _FIRST_DATE = (1980, 1, 1, 0, 0, 0)  # that a ZIP archive can have
 
@@ -69,6 +72,7 @@ def docx_of(document: Document) -> bytes:
 
 def _set_up(file: Any, document: Document) -> None:
     """Set paper, fonts, properties, and the line at the foot of every page."""
+    from docx.oxml.ns import qn
     from docx.shared import Mm, Pt
 
     section = file.sections[0]
@@ -87,6 +91,12 @@ def _set_up(file: Any, document: Document) -> None:
     for name in ("Normal", "Title", "Heading 1"):  # the other styles follow these
         _set_font(file.styles[name])
     file.styles["Caption"].paragraph_format.keep_with_next = True
+    for side in file.styles[_TABLE].element.iter(qn("w:tblCellMar")):
+        for name in ("top", "bottom"):
+            side.find(qn(f"w:{name}")).set(qn("w:w"), _PADDING)
+    for band in file.styles[_TABLE].element.iter(qn("w:shd")):
+        band.attrib.clear()
+        band.attrib.update({qn("w:val"): "clear", qn("w:color"): "auto", qn("w:fill"): _BAND})
     properties, moment = (
         file.core_properties,
         datetime.combine(day.fromisoformat(document.date), time(12), UTC),
@@ -147,7 +157,7 @@ def _add_table(file: Any, block: Table) -> None:
     file.add_paragraph(block.caption, "Caption")
     widths = [Mm(width) for width in _widths(block)]
     size = Pt(_SMALLER if len(widths) > _MANY else _SMALL)
-    table = file.add_table(len(block.rows) + 1, len(block.columns), "Light Shading")
+    table = file.add_table(len(block.rows) + 1, len(block.columns), _TABLE)
     table.autofit = False
     for column, width in zip(table.columns, widths, strict=True):
         column.width = width
@@ -157,7 +167,7 @@ def _add_table(file: Any, block: Table) -> None:
             cell.width = width
             paragraph = cell.paragraphs[0]
             paragraph.paragraph_format.space_after = Pt(0)
-            run = paragraph.add_run(text)
+            run = paragraph.add_run(text.replace(" %", "\N{NO-BREAK SPACE}%"))
             run.font.size, run.bold = size, place == 0
             if column in block.numbers:
                 paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT

@@ -58,16 +58,29 @@ def pitch_stiffness_rows(found: HingedBlade) -> Iterator[tuple[str, str]]:
             yield _SPREAD[name], f"{value:.5g}"
 
 
+def comparison_columns(compared: BladeComparison) -> tuple[str, ...]:
+    """Return the headings of `comparison_rows`."""
+    ends = (
+        f"{np.degrees(pitch):.3g} deg: {blade}"
+        for pitch in compared.pitch[[0, -1]]
+        for blade in ("elastic", "hinged")
+    )
+    return ("quantity", *ends, "difference")
+
+
 def comparison_rows(compared: BladeComparison) -> Iterator[tuple[str, ...]]:
-    """Yield the name of each quantity, both blades at the first and the last collective, and the largest difference."""
+    """Yield the name of each quantity, both blades at the first and the last collective, and the largest difference.
+
+    A difference that is not judged stands in brackets.
+    """
     for one in compared.quantities:
         elastic, hinged = (_in_its_unit(compared, one, values) for values in (one.elastic, one.hinged))
         ends = (elastic[0], hinged[0], elastic[-1], hinged[-1])
-        mark = "" if one.counts else " (not judged)"
+        difference = f"{100 * one.difference:.1f} %"
         yield (
             f"{one.name}{_unit_in_words(one)}",
             *(f"{end:.4g}" for end in ends),
-            f"{one.difference:.1%}{mark}",
+            difference if one.counts else f"({difference})",
         )
 
 
@@ -100,9 +113,10 @@ def records(compared: BladeComparison) -> list[dict[str, Any]]:
 def verdict(compared: BladeComparison) -> Iterator[str]:
     """Yield sentences on whether a hinged blade is a good model of this blade."""
     if not compared.poor:
-        yield f"A hinged blade is a good model: all judged quantities are within {GOOD:.0%} over the whole range."
+        within = f"all judged quantities are within {100 * GOOD:.0f} % over the whole range"
+        yield f"A hinged blade is a good model: {within}."
         return
-    worst = ", ".join(f"{one.name} ({one.difference:.0%})" for one in compared.poor)
+    worst = ", ".join(f"{one.name} ({100 * one.difference:.0f} %)" for one in compared.poor)
     yield f"A hinged blade is no good model of this blade in: {worst}."
 
 

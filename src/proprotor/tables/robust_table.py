@@ -64,7 +64,7 @@ def robust_verdict(found: Dataset) -> str:
 def robust_counts(found: Dataset) -> list[str]:
     """Return how the box was searched in sentences: the designs tried, and those of which nothing is known."""
     counts = f"{found.attrs['evaluated']} designs were analysed; {found.attrs['above']} are stable throughout"
-    lines = [f"{counts}, {found.attrs['below']} unstable from the lowest airspeed on."]
+    lines = [f"{counts}, {found.attrs['below']} are unstable from the lowest airspeed on."]
     if found.attrs["failed"]:
         lines.append(
             f"{found.attrs['failed']} could not be analysed, the first because: {found.attrs['reason']}."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.case import Case
-from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked
+from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked, position
 from proprotor.model.stamp import density_of
 from proprotor.stability.mode_names import DOUBTFUL
 from proprotor.tables.csv_text import csv_of
@@ -39,9 +39,18 @@ _SPEED_WIDTH = 7
 _MODE_WIDTH = 14
 
 
-def heading(case: Case) -> str:
-    """Return the title of a case and its rotor speed, as they stand above its tables."""
-    return f"{case.title or case.name}, {case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
+def heading(case: Case, varied: Collection[str] = ()) -> str:
+    """Return the title of a case and its rotor speed, as they stand above its tables.
+
+    The rotor speed is left out where it varies, and where the title has it.
+    """
+    title, speed = case.title or case.name, rotor_speed_in_words(case)
+    return title if "operation.rotor_speed" in varied or speed in title else f"{title}, {speed}"
+
+
+def rotor_speed_in_words(case: Case) -> str:
+    """Return the rotor speed of a case in revolutions per minute, with the unit."""
+    return f"{case.operation.rotor_speed * 30 / math.pi:.0f} rpm"
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +133,7 @@ class SweepTable:
         mixed = []
         for place in np.flatnonzero(low.any(axis=0)):
             speeds = self.airspeed[low[:, place]]
-            first, last = (f"{end:g} {self.unit}" for end in (speeds.min(), speeds.max()))
+            first, last = (f"{position(end)} {self.unit}" for end in (speeds.min(), speeds.max()))
             where = f"at {first}" if len(speeds) == 1 else f"from {first} to {last}"
             mixed.append(f"{self.sweep.mode.values[place]} {where}")
         if not mixed:
