@@ -73,6 +73,7 @@ OPENED = {
     "files/output.py": "what is written",
     "files/source_code.py": "this package",
     "needs.py": "files of the system",
+    "plots/animation.py": "the bytes of a film",
     "compiled/library.py": "sources of this package",
     "compiled/single_file.py": "sources of this package",
     "study/checkpoint.py": "what a study wrote",

@@ -5,7 +5,7 @@ import pytest
 
 import proprotor as pp
 from proprotor.stability.boundary_lines import boundary_lines
-from proprotor.stability.map import _Edges, _largest_growth, _lines, stability_map
+from proprotor.stability.map import _Edges, _lines, largest_growth, stability_map
 from tests.known_systems import linear_model
 
 KNOT = 1852 / 3600
@@ -94,7 +94,7 @@ def test_at_a_saddle_the_boundary_parts_what_the_middle_keeps_apart(height):
 def test_the_level_shifts_the_growth():
     """ζ = 0.02: growth at a level of 0.05 is that of the missing damping."""
     model = linear_model(np.eye(1)[None], 0.4 * np.eye(1)[None], 100 * np.eye(1)[None])
-    found, value = _largest_growth(model, 0.05)
+    found, value = largest_growth(model, 0.05)
     assert found == pytest.approx([10 * (0.05 - 0.02)]) and abs(value[0]) == pytest.approx(10)
 
 
