@@ -208,7 +208,7 @@ from proprotor.study.variables import QUANTITIES
 for name in pp.list_cases():
     found = pp.study(pp.load_case(name), {"operation.density": [1.0, 1.1]}, [60.0, 70.0], QUANTITIES, workers=1)
     assert (found.reason == "").all(), name
-by_name = {"proprotor.explore", "proprotor.explore.notebook"}  # imported with `pp.explore`, the name; nothing of it is called
+by_name = {"proprotor.explore", "proprotor.explore.notebook"}  # imported with the names of `pp`, and not called
 used = set(sys.modules) - by_name
 print([name for name in used if name.startswith("proprotor.") and name.split(".")[1] in source_code.SHOWING])
 """
