@@ -36,7 +36,7 @@ _HEAD = """\
 
        cc -O2 -std=gnu11 -march=native -ffp-contract=off -fno-math-errno -fno-trapping-math -c proprotor.c
 
-   proprotor, https://pypi.org/project/proprotor; licence BSD-3-Clause. */
+   Part of the Python package proprotor; licence BSD-3-Clause. */
 
 #include "proprotor.h"
 
