@@ -24,10 +24,9 @@ from tests.oracles.nonlinear_rotor import (
     linearised,
     spring_rows,
 )
-from tests.oracles.random_rotors import NO_LINKAGES, SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import NO_LINKAGES, RotorInAir
 from tests.oracles.virtual_work import airload_rows, lift_slope_rows
 
-DENSITY = 1.1
 POWERED = {"collective": 0.8}
 
 THREE_AIRFOILS = (
@@ -81,23 +80,7 @@ CASES = {
 }
 
 
-class Case:
-    """A rotor in the air, in the package and in the oracle."""
-
-    def __init__(self, seed, airspeed, trim, compressibility=True, section_damping=True, **rotor):
-        self.pair = random_rotor(seed, **rotor)
-        self.airspeed = airspeed
-        self.switches = {"compressibility": compressibility, "section_damping": section_damping}
-        self.operation = pp.Operation(
-            rotor_speed=self.pair.rotor_speed, density=DENSITY, speed_of_sound=SPEED_OF_SOUND, trim=trim
-        )
-        self.air = self.pair.air(airspeed, DENSITY, **self.switches)
-
-    def model(self, **options):
-        model = pp.rotor_model(self.pair.package, self.operation, self.airspeed, **self.switches, **options)
-        assert model.trim.converged, model.trim.reason
-        return model
-
+class Case(RotorInAir):
     def airloads(self, kind="full", **options):
         """(the model with airloads, what they add to its matrices)."""
         loaded, bare = self.model(airloads=kind, **options), self.model(airloads="none", **options)

@@ -18,10 +18,9 @@ from proprotor.stability.origins import model_parts
 from proprotor.study.study import study
 from tests.oracles import induced_flow
 from tests.oracles.nonlinear_rotor import DOFS
-from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import DENSITY, SPEED_OF_SOUND, RotorInAir, random_rotor
 from tests.stability.test_sensitivity import EIGENVALUE, extrapolated, largest_step
 
-DENSITY = 1.1
 RIGID = {"pitch": "rigid", "locked": ["flap", "lag", "gimbal"]}
 INFLOW = induced_flow.INFLOW
 CASES = {
@@ -45,28 +44,9 @@ CASES = {
 }
 
 
-class Case:
-    """A rotor in the air, in the package and in the oracle."""
-
-    def __init__(self, seed, airspeed, trim, compressibility=True, section_damping=True, **rotor):
-        self.pair = random_rotor(seed, **rotor)
-        self.airspeed = airspeed
-        self.switches = {"compressibility": compressibility, "section_damping": section_damping}
-        self.operation = pp.Operation(
-            rotor_speed=self.pair.rotor_speed, density=DENSITY, speed_of_sound=SPEED_OF_SOUND, trim=trim
-        )
-        self.air = self.pair.air(airspeed, DENSITY, **self.switches)
-
-    def model(self, airspeed=None, **options):
-        speed = self.airspeed if airspeed is None else airspeed
-        model = pp.rotor_model(self.pair.package, self.operation, speed, **self.switches, **options)
-        assert np.all(model.trim.converged), model.trim.reason
-        return model
-
-
 @pytest.fixture(params=CASES, scope="module")
 def case(request):
-    return Case(**CASES[request.param])
+    return RotorInAir(**CASES[request.param])
 
 
 # Against the nonlinear rotor ---------------------------------------------------------------------------------
@@ -109,7 +89,7 @@ def test_steady_induced_velocity_alone_is_the_same_rotor_without_states(case):
 
 def test_lift_slope_airloads_have_no_steady_loads_that_turn():
     """A uniform gust along the axis and a uniform inflow against it are the same air: so are their loads."""
-    case = Case(seed=47, airspeed=110.0, trim={"collective": 0.8})
+    case = RotorInAir(seed=47, airspeed=110.0, trim={"collective": 0.8})
     model = case.model(inflow="dynamic", airloads="lift-slope", pitch="coupling")
     own, n = model.dofs.index("inflow_0"), len(DOFS) - 3
     np.testing.assert_allclose(
@@ -143,7 +123,7 @@ def independent(case, collective):
     [(100.0, 0.6), (100.0, 0.8), (100.0, 0.95), (100.0, 0.1), (20.0, 0.95), (20.0, 0.1), (5.0, 0.05)],
 )
 def test_the_trim_meets_the_stream_tube(airspeed, collective):
-    case = Case(seed=45, airspeed=airspeed, trim={"collective": collective})
+    case = RotorInAir(seed=45, airspeed=airspeed, trim={"collective": collective})
     found = case.model(inflow="momentum", **RIGID).trim
     assert float(found.inflow) == pytest.approx(independent(case, collective), abs=1e-10)
 
@@ -151,7 +131,7 @@ def test_the_trim_meets_the_stream_tube(airspeed, collective):
 @pytest.mark.parametrize(("airspeed", "collective"), [(20.0, 0.09), (20.0, 0.05), (20.0, 0.02), (5.0, 0.01)])
 def test_a_rotor_that_brakes_more_than_its_air_could_without_inflow_has_a_trim(airspeed, collective):
     """The thrust without induced velocity has no root of momentum theory; the smaller thrust with it has one."""
-    case = Case(seed=45, airspeed=airspeed, trim={"collective": collective})
+    case = RotorInAir(seed=45, airspeed=airspeed, trim={"collective": collective})
     area = np.pi * case.air.radius**2
     assert case.model(**RIGID).trim.thrust < -DENSITY * area * airspeed**2 / 2
     found = case.model(inflow="momentum", **RIGID).trim
@@ -178,7 +158,7 @@ def test_in_a_vacuum_there_is_no_inflow():
 )
 def test_hover_has_a_trim(trim):
     """Without airspeed T = 2ρA λ²."""
-    case = Case(seed=46, airspeed=0.0, trim=trim)
+    case = RotorInAir(seed=46, airspeed=0.0, trim=trim)
     found = case.model(inflow="dynamic")
     area = np.pi * case.air.radius**2
     assert float(found.trim.thrust) == pytest.approx(
@@ -188,7 +168,7 @@ def test_hover_has_a_trim(trim):
 
 
 def test_a_given_thrust_has_the_root_of_the_quadratic():
-    case = Case(**CASES["climb with much thrust"])
+    case = RotorInAir(**CASES["climb with much thrust"])
     trim, area = case.model(inflow="momentum").trim, np.pi * case.air.radius**2
     thrust = 0.012 * DENSITY * area * (case.pair.rotor_speed * case.air.radius) ** 2
     root = np.sqrt((case.airspeed / 2) ** 2 + thrust / (2 * DENSITY * area)) - case.airspeed / 2
@@ -197,7 +177,7 @@ def test_a_given_thrust_has_the_root_of_the_quadratic():
 
 
 def test_a_stream_tube_without_a_root_is_a_failed_point_that_spoils_no_other():
-    case = Case(seed=48, airspeed=90.0, trim={"thrust_coefficient": -0.01})
+    case = RotorInAir(seed=48, airspeed=90.0, trim={"thrust_coefficient": -0.01})
     speeds = np.array([0.0, 5.0, 60.0, 90.0, -1.0, np.nan])
     package, operation = case.pair.package, case.operation
     trim = pp.rotor_model(package, operation, speeds, inflow="dynamic").trim
@@ -338,7 +318,7 @@ def test_inflow_of_a_rotor_that_stands_still_decays_as_the_mass_of_air_and_its_f
 
 def test_a_hub_that_moves_ahead_is_a_rotor_at_another_airspeed():
     """Uniform inflow after a steady change of the hub's speed, beside trims on both sides of the airspeed."""
-    case, step = Case(seed=45, airspeed=100.0, trim={"collective": 0.8}), 1e-3
+    case, step = RotorInAir(seed=45, airspeed=100.0, trim={"collective": 0.8}), 1e-3
     model = case.model(inflow="dynamic", **RIGID)
     (z, inflow) = places(model, "z", "inflow_0")
     ahead, behind = (
@@ -440,7 +420,7 @@ def test_derivatives_of_roots_through_the_induced_velocity(xv15, inflow):
 
 def test_the_trim_of_a_complex_step_is_exact():
     """Of the induced velocity with the density, at a thrust whose root has a closed form."""
-    case = Case(**CASES["climb with much thrust"])
+    case = RotorInAir(**CASES["climb with much thrust"])
     area, speed = np.pi * case.air.radius**2, case.airspeed
     operation = replace(case.operation, density=DENSITY + 1e-30j, trim={"collective": 0.35})
     model = pp.rotor_model(case.pair.package, operation, speed, inflow="momentum")

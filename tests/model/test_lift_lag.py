@@ -22,11 +22,10 @@ from proprotor.rotor.options import LOCKABLE
 from proprotor.stability.origins import model_parts
 from tests.oracles.lagging_lift import jones, what_lag_adds
 from tests.oracles.nonlinear_rotor import DOFS
-from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import RotorInAir
 
 ROTOR_MODEL = sys.modules["proprotor.model.rotor_model"]
 FREQUENCIES = 1j * np.array([0.3, 8.0, 45.0, 130.0]) + np.array([0.0, -3.0, 2.0, 0.0])
-DENSITY = 1.1
 CASES = {
     "windmilling": {"seed": 21, "n_blades": 3, "airspeed": 90.0, "trim": "windmill"},
     "powered, tables": {
@@ -78,19 +77,7 @@ def xv15():
     return pp.load_case("xv15-uncoupled")
 
 
-class Case:
-    def __init__(self, seed, airspeed, trim, compressibility=True, section_damping=True, **rotor):
-        self.pair = random_rotor(seed, **rotor)
-        self.airspeed = airspeed
-        self.switches = {"compressibility": compressibility, "section_damping": section_damping}
-        self.operation = pp.Operation(
-            rotor_speed=self.pair.rotor_speed, density=DENSITY, speed_of_sound=SPEED_OF_SOUND, trim=trim
-        )
-        self.air = self.pair.air(airspeed, DENSITY, **self.switches)
-
-    def model(self, **options):
-        return pp.rotor_model(self.pair.package, self.operation, self.airspeed, **self.switches, **options)
-
+class Case(RotorInAir):
     def lagging_one_by_one(self, quasi_steady, s):
         """The same as `dynamic`, from the nonlinear rotor."""
         rotor, trim = self.pair.oracle(quasi_steady.trim)

@@ -12,6 +12,7 @@ from tests.oracles.nonlinear_rotor import NonlinearRotor, trim_coordinates
 from tests.oracles.virtual_work import Aerodynamics
 
 SPEED_OF_SOUND = 340.3
+DENSITY = 1.1
 NO_OFFSETS = {"mass_offset": 0.0, "aerodynamic_center": 0.0, "propeller_inertia": None}
 NO_LINKAGES = dict.fromkeys(("kinematic_pitch_flap_coupling", "kinematic_pitch_lag_coupling"), 0.0)
 
@@ -178,3 +179,22 @@ def random_rotor(seed, n_blades=None, tables=False, **changes):
         given["offset_mass"] = offset_mass(station, mass, offset, twist, given["lag_hinge_offset"])
     rotor_speed = rng.uniform(40.0, 55.0)
     return Pair(pp.Rotor(**given), given, station, mass, offset, rotor_speed)
+
+
+class RotorInAir:
+    """A rotor in the air, in the package and in the oracle."""
+
+    def __init__(self, seed, airspeed, trim, compressibility=True, section_damping=True, **rotor):
+        self.pair = random_rotor(seed, **rotor)
+        self.airspeed = airspeed
+        self.switches = {"compressibility": compressibility, "section_damping": section_damping}
+        self.operation = pp.Operation(
+            rotor_speed=self.pair.rotor_speed, density=DENSITY, speed_of_sound=SPEED_OF_SOUND, trim=trim
+        )
+        self.air = self.pair.air(airspeed, DENSITY, **self.switches)
+
+    def model(self, airspeed=None, **options):
+        speed = self.airspeed if airspeed is None else airspeed
+        model = pp.rotor_model(self.pair.package, self.operation, speed, **self.switches, **options)
+        assert np.all(model.trim.converged), model.trim.reason
+        return model
