@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from tests.derive.test_airloads_virtual_work import DENSITY, Case
+from tests.derive.test_airloads_virtual_work import Case
 from tests.oracles.motion import Motion
 from tests.oracles.nonlinear_rotor import AZIMUTH, HUB_MOMENT, UNIT, blades, clock, linearised
-from tests.oracles.random_rotors import SPEED_OF_SOUND, random_rotor
+from tests.oracles.random_rotors import DENSITY, SPEED_OF_SOUND, random_rotor
 from tests.oracles.virtual_work import (
     airload_rows,
     nose_up_rotation,
