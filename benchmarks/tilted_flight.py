@@ -100,8 +100,8 @@ def draw(case: pp.Case, angles: dict[str, list[Boundary]], loads: list[Boundary]
     for axes in (left, right):
         axes.margins(y=0.3)
         axes.legend(loc="upper left", frameon=False)
-    average = "Boundaries of the average over the azimuth."
-    pictures.tell_case(left, case, average, "Beside shaft angle, cyclic and load factor:")
+    varied = "options beside the defaults: shaft angle, cyclic, load factor"
+    pictures.tell_case(left, case, f"Boundaries of the average over the azimuth; {varied}.")
     return figure
 
 
