@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import IO, Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from benchmarks.bell_points import (
 )
 from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.tables.points import Column, Points, read_points
+from proprotor.typing import Axes
 
 FIGURES = {
     "on the downstop": "xv15-aircraft-on.png",
@@ -130,20 +131,18 @@ def _summary(judged: Judged) -> Iterator[str]:
     yield ""
 
 
-def draw(name: str, file: IO[bytes], dpi: int = 110) -> None:
-    """Draw the boundaries of a configuration over the rotor speed, with Bell's points, into a PNG file."""
+def draw(name: str) -> Axes:
+    """Draw the boundaries of a configuration over the rotor speed, with Bell's points."""
     found = CONFIGURATIONS[name].case().boundary_against({"operation.rotor_speed": _SHOWN * RPM}, SCAN)
     hertz, speed = found.frequency / (2 * np.pi), found.airspeed / (1852 / 3600)
     shown = found.onset & ((hertz > _WING[0]) & (hertz < _WING[1]) & (speed < _LIMITS[1])).any(
         "operation.rotor_speed"
     )
-    ax = plot_boundary_against(
+    return plot_boundary_against(
         found.isel(branch=np.flatnonzero(shown)),
         points=_points_of(read_points(PUBLISHED), name),
         limits=_LIMITS,
     )
-    figure: Any = ax.get_figure()
-    figure.savefig(file, format="png", dpi=dpi, metadata={"Software": None})
 
 
 def _points_of(points: Points, name: str) -> Points:

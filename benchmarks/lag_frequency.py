@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,11 +20,12 @@ from rich.console import Console
 from scipy.optimize import brentq, least_squares, minimize_scalar
 
 import proprotor as pp
+from benchmarks import pictures
 from benchmarks.page_table import PageTable, page_is_wanted
 from benchmarks.paper_figures.blade_state import blade_state, couplings, effective_springs, on_rigid_hub
 from benchmarks.paper_figures.published import PAPER_FREQUENCIES
-from proprotor.files.output import write_whole
-from proprotor.typing import Array
+from proprotor.plots.style import GREY, LABEL_SIZE
+from proprotor.typing import Array, Figure
 from proprotor.units import KNOT
 
 DECKS = ("xv15-uncoupled", "xv15-wing")
@@ -38,7 +38,6 @@ SPEEDS = np.array([50.0, 400.0])  # kt, the ends of the paper's Fig. 14 that the
 KNOTS = np.arange(50.0, 401.0, 50.0)
 SCAN = "50:480:10kt"
 MEASURED = 1.736
-FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "lag-frequency.png"
 
 
 class Target(NamedTuple):
@@ -513,7 +512,7 @@ TABLES = {
 }
 
 
-def draw(axes: Any) -> None:
+def draw() -> Figure:
     """Draw lag frequencies against the pitch of the blade: published, and by the springs of Table 1."""
     pitch = np.linspace(0, 60, 61)
     turn = np.radians(pitch)
@@ -521,36 +520,36 @@ def draw(axes: Any) -> None:
     in_air = 1 + on_rigid_hub(CASE, knots * KNOT, pitch="coupling")["low cyclic lag"]
     at = np.degrees(blade_state(CASE, knots * KNOT).structural_pitch - ROTOR.structural_pitch_offset)
     paper, bell = targets()
-    axes.plot(pitch, lag_frequency(ROTOR, turn), "C0", label="Table 1, δs 15°: uncoupled, 458 rpm")
-    axes.plot(pitch, lag_frequency(ROTOR, turn, 565 * RPM), "C0--", label="the same per rev of 565 rpm")
-    axes.plot(pitch, coupled_on_rigid_hub(ROTOR, turn)[1], "C1", label="Table 1: cyclic lag in a vacuum")
-    axes.plot(at, in_air, "C1--", label="Table 1: cyclic lag with airloads, 50 to 400 kt")
+    figure, (axes,) = pictures.panels(1, 7.5, 5.5)
+    cases = (
+        ("springs of Table 1, δs 15°: uncoupled, 458 rpm", pitch, lag_frequency(ROTOR, turn)),
+        ("the same per rev of 565 rpm", pitch, lag_frequency(ROTOR, turn, 565 * RPM)),
+        ("the same springs: cyclic lag in a vacuum", pitch, coupled_on_rigid_hub(ROTOR, turn)[1]),
+        ("with airloads, 50 to 400 kt", at, in_air),
+    )
+    for place, (label, x, y) in enumerate(cases):
+        pictures.draw_case(axes, x, y, place, label)
+    read: dict[str, Any] = {"color": GREY, "linewidth": 1.0, "markerfacecolor": "white", "markersize": 7}
     axes.plot(
-        np.degrees(paper.pitch), paper.frequency, "C2o:", label="the paper's text (pitches of 50 and 400 kt)"
+        np.degrees(paper.pitch),
+        paper.frequency,
+        "o:",
+        label="the paper's text (pitches of 50 and 400 kt)",
+        **read,
     )
-    axes.errorbar(
-        np.degrees(bell.pitch),
-        bell.frequency,
-        yerr=15 / 458,
-        fmt="C3s:",
-        label="Bell, calculated (pitches assumed)",
-    )
-    axes.axhline(MEASURED, color="0.5", linestyle=":", label=f"measured, {MEASURED}, pitch not at hand")
+    told = "Bell, calculated (pitches assumed)"
+    axes.errorbar(np.degrees(bell.pitch), bell.frequency, yerr=15 / 458, fmt="s:", label=told, **read)
+    axes.axhline(MEASURED, color=GREY, linestyle="--", linewidth=1.0)
+    above: dict[str, Any] = {"fontsize": LABEL_SIZE, "ha": "right", "va": "bottom"}
+    axes.text(60, MEASURED + 0.005, f"measured: {MEASURED}, pitch not at hand", **above)
     axes.set(
         xlabel="Pitch of the blade at 0.75 R (deg)",
         ylabel="Lag frequency, rotating axes (per rev)",
         ylim=(1, 2.2),
     )
-    axes.figure.legend(loc="outside lower center", ncols=2, fontsize="small")
-
-
-def write_figure() -> None:
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(7.5, 5.5), layout="constrained")
-    draw(axes)
-    write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))
-    plt.close(figure)
+    axes.legend(loc="lower left")
+    pictures.tell_case(axes, CASE, pitch="coupling")
+    return figure
 
 
 def main() -> None:
@@ -561,7 +560,7 @@ def main() -> None:
         console.print(table.printed(title))
         if page:
             table.write("lag-frequency.md")
-    write_figure()
+    pictures.write(draw, "lag-frequency.png")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,5 @@
 """What a reader sees: no text over another, nothing drawn where nothing is known, options, sweeps apart, in grey."""
 
-from itertools import combinations
-
 import matplotlib
 import numpy as np
 import pytest
@@ -13,6 +11,7 @@ from proprotor.plots.mode_motion import mode_motion
 from proprotor.plots.style import DAMPS, DRIVES, SHEET, STABLE, UNKNOWN, UNSTABLE, mode_styles
 from proprotor.stability.boundary_lines import boundary_lines
 from proprotor.tables.sweep_summary import broad_modes, damped_frequency, unstable_ranges
+from tests.readable import check_texts
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -90,37 +89,9 @@ def draw(results, name):
     return figure
 
 
-def boxes(figure):
-    """Return each text that is seen, with the box of its letters."""
-    renderer = figure.canvas.get_renderer()
-    texts = {id(text): text for text in [*figure.texts, figure._suptitle] if text is not None}
-    for ax in figure.axes:
-        axis_texts = [ax.title, ax._left_title, ax._right_title, ax.xaxis.label, ax.yaxis.label]
-        inside = [tick.label1 for axis in (ax.xaxis, ax.yaxis) for tick in axis._update_ticks()]
-        legend = ax.get_legend().get_texts() if ax.get_legend() else []
-        texts |= {id(text): text for text in [*ax.texts, *axis_texts, *inside, *legend]}
-    for text in texts.values():
-        annotates = hasattr(text, "xyann")
-        if (
-            text.get_text().strip()
-            and text.get_visible()
-            and not (annotates and not text._check_xy(renderer))
-        ):
-            yield text, matplotlib.text.Text.get_window_extent(text, renderer)
-
-
 @pytest.mark.parametrize("name", PICTURES)
 def test_no_text_stands_over_another_or_beyond_the_figure(results, name):
-    figure = draw(results, name)
-    found = [(text.get_text(), box) for text, box in boxes(figure)]
-    assert len(found) > 5
-    for (one, first), (other, second) in combinations(found, 2):
-        width = min(first.x1, second.x1) - max(first.x0, second.x0)
-        height = min(first.y1, second.y1) - max(first.y0, second.y0)
-        assert width < 1.5 or height < 1.5, f"{one!r} over {other!r}"
-    for text, box in found:
-        assert box.x0 > -1 and box.x1 < figure.bbox.x1 + 1, text
-        assert box.y0 > -1 and box.y1 < figure.bbox.y1 + 1, text
+    check_texts(draw(results, name))
 
 
 @pytest.mark.parametrize("name", PICTURES)

@@ -14,6 +14,7 @@ import os
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -62,33 +63,52 @@ def core_in_force(kernel: str | None = None) -> str:
     return found[1] if found and not tried.returncode else ""
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the tests under every kernel but the process's own; further arguments are those of pytest."""
-    given = sys.argv[1:] if arguments is None else arguments
+def tested(kernel: str, arguments: list[str]) -> bool:
+    """Run the tests under a kernel, print what they print when they are done, and return whether all passed."""
     files = [
         path.relative_to(ROOT).as_posix()
         for name in NUMERICAL
         for path in (ROOT / "tests").glob(f"*/test_{name}.py")
     ]
-    failed, run = [], []
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *files, *arguments]
+    done = subprocess.run(
+        command,
+        env=environment(kernel),
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    print(f"{kernel}:\n{done.stdout}", flush=True)
+    return not done.returncode
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the tests under every kernel but the process's own; further arguments are those of pytest.
+
+    Each kernel has a process of its own, and there are as many at a time as processors: kernels take about the same
+    time, so that all processors are busy until the end.
+    """
+    given = sys.argv[1:] if arguments is None else arguments
+    asked = []
     own = core_in_force()
     for kernel in KERNELS:
         if kernel == own:
             print(f"{kernel}: passed over, as `make test` runs under it", flush=True)
-            continue
-        if (core := core_in_force(kernel)) != kernel:
+        elif (core := core_in_force(kernel)) != kernel:
             print(
                 f"{kernel}: passed over, as this processor or OpenBLAS has {core or 'none'} in its place",
                 flush=True,
             )
-            continue
-        print(f"{kernel}:", flush=True)
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *files, *given]
-        run.append(kernel)
-        if subprocess.run(command, env=environment(kernel), cwd=ROOT, check=False).returncode:
-            failed.append(kernel)
+        else:
+            asked.append(kernel)
+    with ThreadPoolExecutor(os.cpu_count()) as processors:
+        passed = processors.map(lambda kernel: tested(kernel, given), asked)
+        failed = [kernel for kernel, all_passed in zip(asked, passed, strict=True) if not all_passed]
     print(
-        f"numerical tests run under {', '.join(run) or 'no kernel'}; failed under {', '.join(failed) or 'none'}"
+        f"numerical tests run under {', '.join(asked) or 'no kernel'}; "
+        f"failed under {', '.join(failed) or 'none'}"
     )
     return 1 if failed else 0
 
