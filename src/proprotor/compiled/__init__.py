@@ -7,6 +7,7 @@ functions hand over. Nothing needs this room: without a compiler everything is c
     library      builds, keeps and loads the library; says why there is none
     eigenvalues  eigenvalues and right vectors of many matrices, roots of equations of motion
     plans        trims of blades and matrices of rotors by the plans of the derivation
+    in_flight    trim and matrices of rotors without any reservation in one call
     bounds       the bound on the path to a trim
     motion       equations of motion on a support, whether every motion has mass, state matrices
     screening    nearest roots of the steps of scans, and which steps may hold a crossing
@@ -30,4 +31,14 @@ functions hand over. Nothing needs this room: without a compiler everything is c
 The public names of these modules, but for `columns`, are the room's face.
 """
 
-__all__ = ["bounds", "eigenvalues", "library", "motion", "plans", "screening", "shapes", "single_file"]
+__all__ = [
+    "bounds",
+    "eigenvalues",
+    "in_flight",
+    "library",
+    "motion",
+    "plans",
+    "screening",
+    "shapes",
+    "single_file",
+]
