@@ -95,10 +95,14 @@ def boundary(
 
     \b
     Examples:
-      proprotor boundary xv15 --against "operation.rotor_speed=300:610:20 rpm" --plot boundary.png
-      proprotor boundary xv15 --against "altitude=0:20000:2000 ft" --scan 200:450:10keas --mode chord
-      proprotor boundary my.toml --against "rotor_speed=400:600:20 rpm" --points measured.csv --plot boundary.png
-      proprotor boundary xv15 --worst-of "rotor.precone=1:4 deg" --worst-of "rotor.control_stiffness=0.7:1.5 of deck"
+      proprotor boundary xv15 --against "operation.rotor_speed=300:610:20 rpm" \\
+        --plot boundary.png
+      proprotor boundary xv15 --against "altitude=0:20000:2000 ft" \\
+        --scan 200:450:10keas --mode chord
+      proprotor boundary my.toml --against "rotor_speed=400:600:20 rpm" \\
+        --points measured.csv --plot boundary.png
+      proprotor boundary xv15 --worst-of "rotor.precone=1:4 deg" \\
+        --worst-of "rotor.control_stiffness=0.7:1.5 of deck"
     """
     if worst_of:
         _check_alone()

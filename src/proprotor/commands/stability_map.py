@@ -71,8 +71,10 @@ def stability_map(
 
     \b
     Examples:
-      proprotor map xv15 --x airspeed=200:400:10kt --y "rotor.precone=0:5:0.5 deg" --plot map.png
-      proprotor map xv15 --speed "350 kt" --x "support.beam_frequency=2:4:0.1 Hz"
+      proprotor map xv15 --x airspeed=200:400:10kt \\
+        --y "rotor.precone=0:5:0.5 deg" --plot map.png
+      proprotor map xv15 --speed "350 kt" \\
+        --x "support.beam_frequency=2:4:0.1 Hz" \\
         --y "support.modes[torsion].frequency=6:12:0.2 Hz" --csv map.csv
     """
     from proprotor.plots import plot_stability_map  # here, so that --help answers without it

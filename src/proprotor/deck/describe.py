@@ -6,7 +6,6 @@ docs/decks.md (`proprotor.deck.fields_page`) lists them.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterator
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
@@ -18,8 +17,9 @@ from proprotor.control.control_loop import ControlLoop
 from proprotor.deck import control_sections, support_sections
 from proprotor.deck import sections as deck
 from proprotor.deck.fields import AfterChoice, Reading, Section
-from proprotor.deck.sections import LISTS, section_places, sections_at, sections_of
-from proprotor.errors import InputError, list_choices
+from proprotor.deck.file import list_cases
+from proprotor.deck.sections import LISTS, SUPPORT_KINDS, section_places, sections_at, sections_of
+from proprotor.errors import InputError, list_choices, nearest_name
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.drive_train import DriveTrain
@@ -128,11 +128,12 @@ def find_fields(path: str) -> tuple[DeckField, ...]:
 
 
 def _hint(wanted: str) -> str:
-    """Return a hint at the nearest field, by its whole path or its last name."""
+    """Return a hint at the nearest field, by its whole path or its last name, kind of support or bundled deck."""
     known = [plain_path(field.path) for field in deck_fields()]
     names = {path if "." in wanted else path.rpartition(".")[2]: path for path in known}
-    nearest = difflib.get_close_matches(wanted.lower(), names, n=1)
-    return f"did you mean {names[nearest[0]]}?" if nearest else "`proprotor describe` lists them"
+    names |= {name: name for name in (*SUPPORT_KINDS, *list_cases())}
+    nearest = nearest_name(wanted, names)
+    return f"did you mean {names[nearest]}?" if nearest else "`proprotor describe` lists them"
 
 
 def plain_path(path: str) -> str:
