@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
@@ -58,7 +59,12 @@ def _cells(models: dict[str, Rows]) -> Iterator[tuple[str, ...]]:
             f"{rows[label]['chord']:.1f} ({rows[label]['chord'] - rows['nothing']['chord']:+.1f})"
             for rows in models.values()
         ]
-        yield (label, *chord, *(as_text(rows[label]["beam"]) for rows in models.values()))
+        yield (label, *chord, *(_of_beam(rows[label]["beam"]) for rows in models.values()))
+
+
+def _of_beam(speed: float) -> str:
+    """Return a boundary to a tenth of a knot, or that there is none."""
+    return f"{speed:.1f}" if np.isfinite(speed) else as_text(speed)
 
 
 def main() -> None:

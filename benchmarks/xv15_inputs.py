@@ -276,7 +276,9 @@ def control_stiffness(case: pp.Case) -> PageTable:
         found = boundaries(rotor(control_stiffness=stiffness)(case))
         speeds = (as_text(lowest_of_wing(found)), as_text(found["rotor"]))
         rows.append((name, f"{stiffness / FT_LBF:,.0f}", *speeds))
-    return PageTable(f"{MARK}: control stiffness", ("", "K_θ, ft lbf/rad", "wing, kt", "rotor, kt"), rows)
+    return PageTable(
+        f"{MARK}: control stiffness", ("control system", "K_θ, ft lbf/rad", "wing, kt", "rotor, kt"), rows
+    )
 
 
 def main() -> None:
