@@ -63,7 +63,9 @@ def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source,
     assert shown == pytest.approx(wanted, **TOLERANCE), told
     assert {path.name for path in notebooks.PAGES.glob(f"{source.stem}-*.png")} == set(pictures), told
     for name, data in pictures.items():
-        assert _is_drawn(data) and _is_drawn((notebooks.PAGES / name).read_bytes()), name
+        assert _size_of_drawn(data) == _size_of_drawn((notebooks.PAGES / name).read_bytes()), (
+            f"{name}: {told}"
+        )
 
 
 SMALL = """# %% [markdown]
@@ -127,11 +129,12 @@ def test_a_notebook_that_there_is_not_is_told(monkeypatch, capsys):
     assert told.startswith("no such notebook: 9-none; known: 1-kinematics, ") and told.count("\n") == 1
 
 
-def _is_drawn(data: bytes) -> bool:
-    """More than a frame on white."""
+def _size_of_drawn(data: bytes) -> tuple[int, int]:
+    """Return the size of a picture, on which more than a frame on white is drawn."""
     with Image.open(io.BytesIO(data)) as image:
         grey = image.convert("L")
-        return min(grey.size) > 200 and sum(grey.histogram()[:128]) > 1000
+        assert min(grey.size) > 200 and sum(grey.histogram()[:128]) > 1000
+        return grey.size
 
 
 def test_every_equation_and_table_has_its_cell_below_its_heading():

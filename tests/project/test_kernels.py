@@ -1,5 +1,6 @@
 """`make verify` runs the numerical tests under the kernels that it says."""
 
+import ast
 import subprocess
 
 import pytest
@@ -10,6 +11,26 @@ from tests.verify import kernels
 def test_the_numerical_tests_are_there():
     for name in kernels.NUMERICAL:
         assert len([*(kernels.ROOT / "tests").glob(f"*/test_{name}.py")]) == 1, name
+
+
+EIGENVALUES = {"eig", "eigvals", "eigh", "eigvalsh", "modes", "sweep", "flutter_point"}
+
+
+@pytest.mark.parametrize("name", kernels.ALONE)
+def test_of_a_file_that_is_run_in_part_every_test_that_takes_eigenvalues_is_run(name):
+    """Those that call one of them, or a function of the file that does."""
+    (path,) = (kernels.ROOT / "tests").glob(f"*/test_{name}.py")
+    bodies = [
+        node for node in ast.parse(path.read_text(encoding="utf-8")).body if isinstance(node, ast.FunctionDef)
+    ]
+    uses = {
+        body.name: {getattr(node, "attr", getattr(node, "id", "")) for node in ast.walk(body)}
+        for body in bodies
+    }
+    taking = set(EIGENVALUES)
+    while more := {name for name, used in uses.items() if used & taking} - taking:
+        taking |= more
+    assert {name for name in taking if name.startswith("test_")} == set(kernels.ALONE[name])
 
 
 @pytest.fixture

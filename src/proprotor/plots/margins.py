@@ -10,6 +10,7 @@ from proprotor.plots import small_print
 from proprotor.plots.canvas import grid, note, say_origin, two_axes, write_title
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, axis_of, written
+from proprotor.plots.mode_lines import mark_failed
 from proprotor.plots.style import LABEL_SIZE, UNSTABLE, in_style, line_style
 from proprotor.stability.margin_ranges import Needed, decibels
 from proprotor.typing import Array, Axes, Dataset, Figure
@@ -67,7 +68,7 @@ def plot_margins(
     )
     above.set_ylabel("Gain margin, either way (dB)")
     below.set_ylabel("Phase margin (deg)")
-    below.set_xlabel(line.label)
+    above.set_xlabel("")
     small_print.add(below, footer)
     say_origin(below, margins.attrs, _doubts(margins, line))
     return figure
@@ -100,7 +101,9 @@ def _draw(
     )
     ax.margins(x=0.01)
     ax.set_ylim(0, top * 1.02)
-    _mark_instability(ax, line, margins.stable.values)
+    failed = margins.reason.values != ""
+    _mark_instability(ax, line, margins.stable.values | failed)
+    mark_failed(ax, line, failed, first=True)
     grid(ax)
     if (values > top).any():
         note(ax, f"At {top:g} {unit}: that much or more, or no limit")
@@ -116,7 +119,7 @@ def _mark_instability(ax: Axes, line: Positions, stable: Array) -> None:
         ax.text(
             0.99,
             0.03,
-            "shaded: unstable or not known",
+            "shaded: unstable",
             fontsize=LABEL_SIZE,
             ha="right",
             transform=ax.transAxes,

@@ -8,6 +8,7 @@ from proprotor.case import Case
 from proprotor.datum import deck_unit
 from proprotor.deck.vary import design_inputs
 from proprotor.model.doubts import marked
+from proprotor.tables.digits import significant
 from proprotor.typing import Dataset
 from proprotor.units import KNOT, KTAS
 
@@ -64,7 +65,7 @@ def sensitivity_row(record: dict[str, Any], read_in: str) -> tuple[str, ...]:
     return (
         record["input"],
         record["value"],
-        marked(f"{record[f'derivative ({read_in} per unit)']:+.4g}", record["warning"]),
+        marked(significant(record[f"derivative ({read_in} per unit)"], 4, "+"), record["warning"]),
         record["unit"],
-        "" if change is None else marked(f"{change:+.3g}", record["warning"]),
+        "" if change is None else marked(significant(change, 3, "+"), record["warning"]),
     )
