@@ -19,6 +19,8 @@ import jupytext
 import matplotlib
 import nbformat
 
+from benchmarks.pictures import in_few_colours
+
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 PAGE = EXAMPLES / "index.md"
 HEAD = """<!-- Written by python -m benchmarks.examples; edit the scripts. -->
@@ -88,7 +90,8 @@ def main() -> None:
         script.with_suffix(".ipynb").write_text(notebook_of(script), encoding="utf-8", newline="\n")
         with tempfile.TemporaryDirectory() as folder:
             run(script, Path(folder))
-            shutil.copy(Path(folder) / f"{script.stem}.png", EXAMPLES)
+            picture = in_few_colours(Path(folder) / f"{script.stem}.png")
+            script.with_suffix(".png").write_bytes(picture)
         print(f"made: {script.stem}")
     PAGE.write_text(page(), encoding="utf-8", newline="\n")
 

@@ -25,19 +25,18 @@ def test_a_rotor_on_a_support_is_a_product_of_matrices(modes, shared):
     expected = [back @ matrix @ turn for matrix in matrices[:3]] + [back @ matrices[3]]
     for matrix, addition in zip(expected, additions, strict=False):
         matrix[:, :modes, :modes] += addition
-    found = motion.on_support(matrices, hub, additions)
+    found, certain = motion.on_support(matrices, motion.Support(hub, additions))
+    assert (certain == motion.have_mass(found[0])).all()
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-13 * np.abs(other).max())
-    without = motion.on_support(matrices[:3], hub, additions)
+    without, _ = motion.on_support(matrices[:3], motion.Support(hub, additions))
     assert len(without) == 3 and all((one == other).all() for one, other in zip(without, found, strict=False))
     for matrix in matrices:
         matrix[5, 2, 3] = np.nan
-    again = motion.on_support(matrices, hub, additions)
-    alone = motion.on_support(
-        [matrix[9:10] for matrix in matrices],
-        hub if shared else hub[9:10],
-        [part if shared else part[9:10] for part in additions],
-    )
+    again, certain = motion.on_support(matrices, motion.Support(hub, additions))
+    assert not certain[5]
+    own = motion.Support(hub if shared else hub[9:10], [part if shared else part[9:10] for part in additions])
+    alone, _ = motion.on_support([matrix[9:10] for matrix in matrices], own)
     for one, other, single in zip(again, found, alone, strict=True):
         assert np.isnan(one[5]).any() and (np.delete(one, 5, 0) == np.delete(other, 5, 0)).all()
         assert (single == other[9]).all()

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import proprotor as pp
-from benchmarks.bell_boundaries import ACREE, below, relative, root_mean_square, slope_parts
+from benchmarks.bell_boundaries import below, relative, root_mean_square, slope_parts
+from benchmarks.bell_effects import ACREE
 from benchmarks.bell_points import (
     CONFIGURATIONS,
     NONE,

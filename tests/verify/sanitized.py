@@ -85,7 +85,7 @@ def supports(size, modes, count, shared, seed):
     shape = () if shared else (alike,)
     hub = rng.standard_normal((*shape, 6, modes))
     additions = [rng.standard_normal((*shape, modes, modes)) for _ in range(3)]
-    motion.on_support([matrix[:alike] for matrix in matrices], hub, additions)
+    motion.on_support([matrix[:alike] for matrix in matrices], motion.Support(hub, additions))
     calls["supports"] += 1
 
 

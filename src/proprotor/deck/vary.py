@@ -207,8 +207,8 @@ def with_control(case: C, *loops: ControlLoop) -> C:
         {path: number for path, number in numbers.items() if not path.startswith("control.")} | own
         for numbers in (case.given, case.sources)
     )
-    warnings = (*(text for text in case.warnings if text not in old), *law_warnings(loops))
-    return replace(case, loops=loops, given=given, sources=sources, warnings=warnings)
+    remarks = (*(text for text in case.remarks if text not in old), *law_warnings(loops))
+    return replace(case, loops=loops, given=given, sources=sources, remarks=remarks)
 
 
 def added_loops(case: Configuration) -> bool:
