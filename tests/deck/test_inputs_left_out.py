@@ -248,3 +248,22 @@ def test_derivatives_at_a_default():
     assert exact == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-5)
     assert run("sensitivity", "xv15", "--wrt", path, "--json").exit_code == 0
     assert growth_constraint(case, "300 kt", wrt=[path]) is not None
+
+
+def test_a_field_of_the_operation_stands_without_its_table_also_where_the_deck_leaves_it_out():
+    """A hot day: the standard atmosphere at sea level has 288.15 K, and pressure alone sets the density."""
+    hot = [
+        "boundary",
+        "wrats-742-off",
+        "--set",
+        "operation.altitude=0 ft",
+        "--scan",
+        "100:200:50ktas",
+        "--json",
+    ]
+    result = run(*hot, "--against", "temperature_offset=0:30:30 K")
+    assert result.exit_code == 0, result.output
+    first, last = json.loads(result.output)["density (kg/m³)"]
+    assert first / last == pytest.approx((288.15 + 30) / 288.15, rel=1e-6)
+    told = run("boundary", "xv15", "--against", "temperature_offset=0:30:30 K")
+    assert told.exit_code == 2 and "the deck gives density, speed_of_sound instead" in told.output

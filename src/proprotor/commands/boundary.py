@@ -169,7 +169,9 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
         own = {"case.title": case.title or case.name, whole: at}  # the title must not tell one altitude
         request = request._replace(settings={**request.settings, **own})
         return request.load(), whole, given
-    return case, whole if whole in known else path, given
+    from proprotor.deck.describe import deck_fields  # here, because pydantic is slow to import
+
+    return case, whole if any(field.path == whole for field in deck_fields()) else path, given
 
 
 def _scan_of(case: Case, scan: str | None) -> str | None:
