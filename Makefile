@@ -1,8 +1,8 @@
 # Needs Python 3.11 or newer with venv, make and git; everything else goes into .venv.
 PYTHON ?= python3
 BIN := .venv/bin
-# A file's tests stay together: what they have in common is computed once.
-PARALLEL := --numprocesses auto --maxprocesses 8 --dist loadfile
+# A file's tests stay together: what they have in common is computed once. Files come in the order of tests/conftest.py.
+PARALLEL := --numprocesses auto --maxprocesses 8 --dist loadfile --no-loadscope-reorder
 
 demo: .venv/installed  ## Set up .venv, then analyse the XV-15 from 50 to 400 kt: a table, and damping.png (the default)
 	$(BIN)/proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
@@ -10,17 +10,25 @@ demo: .venv/installed  ## Set up .venv, then analyse the XV-15 from 50 to 400 kt
 test: .venv/installed  ## Run the tests
 	$(BIN)/python -m pytest --ignore=tests/verify --ignore=tests/browser $(PARALLEL)
 
+test-all: .venv/verify-installed  ## Run the tests with those of `make test-browser` and of tests/verify, the longest files first; needs what these need
+	$(BIN)/python -m pytest $(PARALLEL)
+
 test-browser: .venv/installed  ## Move the sliders of `proprotor explore` in a real browser; needs Chromium and its driver
 	$(BIN)/python -m pytest tests/browser
 
-test-languages: .venv/installed  ## Run the compiled solver from C, Fortran and Octave, and all compiled functions by Clang; needs gfortran, octave-dev and clang
+test-languages: .venv/installed test-clang  ## Run the compiled solver from C, Fortran and Octave, and all compiled functions by Clang; needs gfortran, octave-dev and clang
 	$(BIN)/python -m pytest tests/compiled/test_single_file.py
+
+test-clang: .venv/installed  ## Run all compiled functions by Clang
 	CC=clang $(BIN)/python -m pytest tests/compiled
 
 verify: .venv/verify-installed  ## Check the equations against derivation and an independent engine, numbers under several kernels of OpenBLAS, packages and site
 	$(BIN)/python -m derive --check
 	$(BIN)/python -m pytest tests/verify $(PARALLEL)
-	$(BIN)/python -m tests.verify.kernels $(PARALLEL)
+	$(BIN)/python -m tests.verify.kernels
+
+verify-kernels: .venv/installed  ## Run the numerical tests under several kernels of OpenBLAS
+	$(BIN)/python -m tests.verify.kernels
 
 verify-versions: .venv/installed  ## Derive the equations under other hash seeds, another Python and another SymPy
 	$(BIN)/python -m tests.verify.determinism
@@ -110,7 +118,7 @@ clean:  ## Remove all that make has made
 help:  ## List the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 24
 
-.PHONY: demo test test-browser test-languages verify verify-versions verify-environments regenerate-equations lint audit notebooks lab drawings figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
+.PHONY: demo test test-all test-browser test-languages test-clang verify verify-kernels verify-versions verify-environments regenerate-equations lint audit notebooks lab drawings figures validation gallery examples docs glossary decks types coverage audit-dependencies audit-vulnerabilities mutate fuzz peers golden clean help
 
 .venv/installed: pyproject.toml generated/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'

@@ -1,6 +1,8 @@
 """Modes of the XV-15's airframe beside the two published sets, on and off the downstop, and what sets each.
 
-    python -m benchmarks.airframe_modes
+    python -m benchmarks.airframe_modes           # prints the tables
+    python -m benchmarks.airframe_modes --page    # and writes them into two pages: docs/supports-aircraft.md
+                                                  # and docs/xv15-aircraft.md
 
 The rotors are point masses at the hubs, without gyroscopics and airloads. Four springs are calibrated, each to one
 frequency of Fig. 7.1.4, which is marked; all other rows are computed from inputs that were not matched to any of them.
@@ -8,11 +10,15 @@ frequency of Fig. 7.1.4, which is marked; all other rows are computed from input
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 import proprotor as pp
+from benchmarks.page_table import PageTable, page_is_wanted
+
+MARK = "python -m benchmarks.airframe_modes --page"
 
 KINDS = ("beam", "chord", "torsion", "pylon yaw")
 BELL = {  # NASA TM X-62,407, Fig. 7.1.4, Hz: off the downstop, on the downstop
@@ -22,6 +28,13 @@ BELL = {  # NASA TM X-62,407, Fig. 7.1.4, Hz: off the downstop, on the downstop
 NASA = (3.3, 6.3, 8.3, None)  # NASA/TP-2004-212262, symmetric, on the downstop
 CALIBRATED = (("symmetric", "torsion"), ("symmetric", "pylon yaw"))
 CLOSE = 0.10
+COLUMNS = (
+    "off: Fig. 7.1.4",
+    "off: computed",
+    "on: Fig. 7.1.4",
+    "on: TP-2004-212262",
+    "on: computed",
+)
 RECALLED = {"roll": 52800, "pitch": 21400, "yaw": 69400}  # slug ft², of published simulation models
 _SIMULATION = {f"support.fuselage.{axis}_inertia": f"{value} slug*ft**2" for axis, value in RECALLED.items()}
 CHANGES = {
@@ -44,21 +57,6 @@ CHANGES = {
     "no sweep, no dihedral": {"support.sweep": "0 deg", "support.dihedral": "0 deg"},
 }
 
-REASON = """\
-Antisymmetric beam and chord are modes of a fuselage with little roll and yaw inertia. Wings, nacelles and rotors have
-38,500 of the 40,500 slug ft^2 in roll that TM X-62,407 prints (with 38,475 the deck is refused); with 20 % more the
-beam mode is within 4 % of the published 5.6 Hz. The chord mode stays above 6.15 Hz with every inertia here: the
-fuselage of TM X-62,407 bends, this one is rigid. Pylon yaw off the downstop has the spring that fits the symmetric
-mode.
-
-Chord slope at BL 28. Free, the symmetric chord mode is 1 % and 6 % below Bell's 5.5 and 5.9 Hz, off and on the
-downstop, and 12 % below the 6.3 Hz of TP-2004-212262; held, 15 % and 12 % above and 5 % above. Both antisymmetric chord
-modes, too high either way, are lower with a free slope. So Bell's frequencies want a free slope, those of
-TP-2004-212262, of a wing mounted at BL 28, a held one. Structure wants a free slope: four fittings, at both spars on
-either side, hold displacements. What would hold the slope in symmetric motion is a pair of spanwise forces at the
-fittings of one side, against those of the other side; frames of the fuselage carry them beside the spars, which
-join the same four points and are much stiffer. The deck has the free slope."""
-
 
 def hertz(case: pp.Case) -> dict[str, float]:
     """Return the frequency of each elastic coordinate, whose mass with the rotors on is one kilogram."""
@@ -72,45 +70,83 @@ def nearest(computed: float, *published: float | None) -> float:
     return min((computed / value - 1 for value in published if value is not None), key=abs)
 
 
-def _beside_published(console: Console) -> None:
-    """Print the modes of both decks beside the published ones."""
-    for place, (state, deck) in enumerate((("off", "xv15-aircraft-off"), ("on", "xv15-aircraft"))):
-        found = hertz(pp.load_case(deck))
-        columns = ("mode", "computed", "TM X-62,407", "TP-2004-212262", "from the nearest", "")
-        table = Table(*columns, title=f"{state} the downstop, Hz")
-        for symmetry, (off, on) in BELL.items():
-            for kind, bell, other in zip(KINDS, (off, on)[place], NASA, strict=True):
-                computed = found[f"{symmetry} {kind}"]
-                nasa = other if symmetry == "symmetric" and state == "on" else None
-                difference = nearest(computed, bell, nasa)
-                verdict = "calibrated to this" if (symmetry, kind) in CALIBRATED else ""
-                verdict = verdict or ("within 10 %" if abs(difference) <= CLOSE else "not within 10 %")
-                cells = (f"{computed:.2f}", f"{bell:g}", "" if nasa is None else f"{nasa:g}")
-                table.add_row(f"{symmetry} {kind}", *cells, f"{100 * difference:+.0f} %", verdict)
-        console.print(table)
+def beside_published() -> PageTable:
+    """Return the modes of both decks beside the published ones, bold where far from each of them."""
+    off, on = (hertz(pp.load_case(deck)) for deck in ("xv15-aircraft-off", "xv15-aircraft"))
+    rows = []
+    for symmetry, (bell_off, bell_on) in BELL.items():
+        for kind, first, second, other in zip(KINDS, bell_off, bell_on, NASA, strict=True):
+            name = f"{symmetry} {kind}"
+            nasa = other if symmetry == "symmetric" else None
+            cells = (_written(off[name], name, first), str(second), "" if nasa is None else str(nasa))
+            rows.append((name, str(first), *cells, _written(on[name], name, second, nasa)))
+    return PageTable(f"{MARK}: modes", ("Hz", *COLUMNS), rows)
 
 
-def _what_sets_each(console: Console) -> None:
-    """Print the modes on the downstop with one input changed at a time."""
+def _written(computed: float, name: str, *published: float | None) -> str:
+    """Return a frequency with its difference from the nearest published one, or the mark of a calibrated one."""
+    if tuple(name.split(" ", 1)) in CALIBRATED:
+        return f"{computed:.2f} c"
+    difference = nearest(computed, *published)
+    bold = "**" if abs(difference) > CLOSE else ""
+    return f"{bold}{computed:.2f}{bold} ({100 * difference:+.0f} %)"
+
+
+def what_sets_each() -> PageTable:
+    """Return the modes on the downstop with one input changed at a time."""
     names = [f"{symmetry} {kind}" for symmetry in BELL for kind in KINDS]
     short = [name.replace("antisymmetric", "anti.").replace("symmetric", "sym.") for name in names]
-    table = Table("on the downstop, Hz", *short, title="one change at a time")
-    for told, settings in ({"as the deck is": {}} | CHANGES).items():
-        try:
-            found = hertz(pp.load_case("xv15-aircraft", settings))
-        except pp.InputError:
-            table.add_row(told, *["refused"] * len(names))
-            continue
-        table.add_row(told, *(f"{found[name]:.2f}" if name in found else "-" for name in names))
-    console.print(table)
+    rows = [(told, *_row(settings, names)) for told, settings in ({"as the deck is": {}} | CHANGES).items()]
+    return PageTable(f"{MARK}: changes", ("on the downstop, Hz", *short), rows)
+
+
+def _row(settings: Mapping[str, str], names: list[str]) -> Iterator[str]:
+    try:
+        found = hertz(pp.load_case("xv15-aircraft", settings))
+    except pp.InputError:
+        yield from ["refused"] * len(names)
+    else:
+        yield from (f"{found[name]:.2f}" if name in found else "–" for name in names)
+
+
+def chord_slope() -> PageTable:
+    """Return the modes of chord with the slope of chord bending free at BL 28, and held."""
+    (_, bell_off, *_), (_, bell_on, *_) = BELL["symmetric"]
+    headings = (
+        "chord slope at BL 28",
+        f"off the downstop: Bell {bell_off}",
+        f"on: Bell {bell_on}, TP-2004-212262 {NASA[1]}",
+        f"antisymmetric, on: Bell {BELL['antisymmetric'][1][1]}",
+        "the same with recalled inertias",
+    )
+    rows = []
+    for state in ("free", "held"):
+        settings = {"support.carry_through.chord_slope": state}
+        off, on, recalled = (
+            hertz(pp.load_case(deck, settings | more))
+            for deck, more in (
+                ("xv15-aircraft-off", {}),
+                ("xv15-aircraft", {}),
+                ("xv15-aircraft", _SIMULATION),
+            )
+        )
+        symmetric = (found["symmetric chord"] for found in (off, on))
+        others = (found["antisymmetric chord"] for found in (on, recalled))
+        rows.append((state, *(f"{value:.2f}" for value in (*symmetric, *others))))
+    return PageTable(f"{MARK}: chord slope", headings, rows)
 
 
 def main() -> None:
-    """Print both tables and the reasons."""
-    console = Console(width=150)
-    _beside_published(console)
-    _what_sets_each(console)
-    console.print(REASON)
+    """Print all tables, and write them into their pages."""
+    page, console = page_is_wanted(__doc__), Console(width=150)
+    for where, table in (
+        ("supports-aircraft.md", beside_published()),
+        ("supports-aircraft.md", what_sets_each()),
+        ("xv15-aircraft.md", chord_slope()),
+    ):
+        console.print(table.printed("Hz; c: calibrated to the published value"))
+        if page:
+            table.write(where)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Bell's stability boundaries of the whole XV-15 beside the model's.
 
     python -m benchmarks.bell_boundaries
+    python -m benchmarks.bell_boundaries --page           # writes what sets the boundaries into docs/xv15-aircraft.md
     python -m benchmarks.bell_boundaries --points FILE    # a CSV file of other points with the same columns
 
 The 40 points are read off Figs. 7.2.1, 7.2.3 and 7.2.5 of NASA TM X-62,407 (to 3 kt), calculations of 1975. The
@@ -19,7 +20,7 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from benchmarks.bell_effects import RPM_OF_SLOPES, Effect, changes, effect, slope_of
+from benchmarks.bell_effects import Change, effect, slope_of, written
 from benchmarks.bell_points import (
     CONFIGURATIONS,
     HIGH_MACH,
@@ -33,9 +34,10 @@ from benchmarks.bell_points import (
     read,
     tip_mach,
 )
+from benchmarks.page_table import PageTable
 from proprotor.units import KNOT
 
-ACREE = 335  # kt, antisymmetric beam at 458 rpm: Acree, Peyran and Johnson 1999, another analysis
+MARK = "python -m benchmarks.bell_boundaries --page"
 _AT = 458.0  # rpm
 _ON, _SOFT, _OFF = CONFIGURATIONS
 _Found = Mapping[Point, Crossing]
@@ -44,20 +46,6 @@ BANDS = """\
 Bands of frequency, from the published frequencies of the airframe at rest alone. Symmetric chord: between the
 geometric means with beam below and torsion above. Antisymmetric: beam, chord and torsion are too near each other to
 be told apart, so one band from half an octave below the first to half an octave above the last.
-"""
-WHAT_SETS = """
-Slopes. If all springs and the speed of sound followed the rotor speed, so would the boundary. What does not follow
-takes its share: wing and pylon, the speed of sound (through the Prandtl-Glauert factor of the tips) and the flap spring
-of the blade about alike, the control system less. Of single inputs structural damping, K_θ and the Prandtl-Glauert
-factor change the slopes most; none gives Bell's.
-
-20 % less stiffness. Wing torsion has most of the loss in both symmetries, chord bending and the downstop the rest.
-
-Downstop. Its pitch spring and the yaw spring of the spindle take equal shares of the symmetric boundary; the pitch
-spring takes nearly all of the antisymmetric one.
-
-Bell's points are calculations of 1975, whose damping and rotor model are not told: a difference is one from another
-analysis, not from a test. The antisymmetric boundaries of Bell and of Acree, Peyran and Johnson are 130 kt apart.
 """
 
 
@@ -99,11 +87,6 @@ def _cells(point: Point, crossing: Crossing) -> tuple[str, ...]:
         crossing.mode,
         f"{mach:.3f}" + (f"  >= {HIGH_MACH}" if mach >= HIGH_MACH else ""),
     )
-
-
-def written(value: float, layout: str) -> str:
-    """Return a number as text; "none" for NaN."""
-    return "none" if np.isnan(value) else format(value, layout)
 
 
 def root_mean_square(found: _Found, which: Callable[[Point], bool]) -> tuple[float, int, int]:
@@ -206,27 +189,27 @@ def slope_parts(own: Mapping[str, float], airspeed: float) -> dict[str, float]:
     return parts
 
 
-def print_what_sets(console: Console, on: tuple[Crossing, ...]) -> None:
-    """Print the parts of slopes, of 20 % less stiffness and of the loss of the downstop at 458 rpm."""
+def what_sets(on: tuple[Crossing, ...]) -> tuple[PageTable, ...]:
+    """Return the parts of slopes, of 20 % less stiffness and of the loss of the downstop at 458 rpm."""
     case = CONFIGURATIONS[_ON].case()
     own = [relative(case, one) for one in on]
-    table = Table("kt/rpm", *SYMMETRIES, title="what sets the slopes at 458 rpm (exact derivatives)")
     parts = [slope_parts(one, crossing.airspeed) for one, crossing in zip(own, on, strict=True)]
-    for name in parts[0]:
-        table.add_row(name, *(f"{one[name]:+.3f}" for one in parts))
-    table.add_row("sum", *(f"{sum(one.values()):+.3f}" for one in parts))
-    table.add_row(
-        "derivative by the rotor speed", *(f"{one['operation.rotor_speed'] / _AT:+.3f}" for one in own)
+    slopes = [(name, *(f"{one[name]:+.3f}" for one in parts)) for name in parts[0]]
+    slopes.append(("sum", *(f"{sum(one.values()):+.3f}" for one in parts)))
+    slopes.append(
+        ("derivative by the rotor speed", *(f"{one['operation.rotor_speed'] / _AT:+.3f}" for one in own))
     )
-    console.print(table)
-    table = Table("kt", *SYMMETRIES, title="what sets the loss with 20 % less stiffness, to first order")
-    for name, path in _SPRINGS_OF_AIRFRAME.items():
-        table.add_row(name, *(f"{np.log(0.8) * one[path]:+.1f}" for one in own))
-    console.print(table)
-    table = Table("kt", *SYMMETRIES, title="what sets the loss off the downstop")
-    for name, differences in _off_by_parts(on).items():
-        table.add_row(name, *(written(one, "+.1f") for one in differences))
-    console.print(table)
+    softer = {path: [np.log(0.8) * one[path] for one in own] for path in _SPRINGS_OF_AIRFRAME.values()}
+    stiffness = [
+        (name, *(f"{value:+.1f}" for value in softer[path])) for name, path in _SPRINGS_OF_AIRFRAME.items()
+    ]
+    stiffness.append(("sum", *(f"{value:+.1f}" for value in np.sum(list(softer.values()), axis=0))))
+    off = [(name, *(written(one, "+.1f") for one in changes)) for name, changes in _off_by_parts(on).items()]
+    return (
+        PageTable(f"{MARK}: slopes", ("kt/rpm, exact derivatives", *SYMMETRIES), slopes),
+        PageTable(f"{MARK}: stiffness", ("20 % less stiff, kt, to first order", *SYMMETRIES), stiffness),
+        PageTable(f"{MARK}: downstop", ("off the downstop, kt", *SYMMETRIES), off),
+    )
 
 
 def _off_by_parts(on: tuple[Crossing, ...]) -> dict[str, list[float]]:
@@ -253,59 +236,13 @@ def _changed(case: pp.Case, on: tuple[Crossing, ...]) -> list[float]:
     return [one.airspeed - before.airspeed for one, before in zip(crossings, on, strict=True)]
 
 
-# Effects of inputs ----------------------------------------------------------------------------------------------------
-
-
-def print_effects(console: Console) -> tuple[Crossing, ...]:
-    """Print what each input does, one at a time, and return the boundaries of the deck as it is at 458 rpm."""
-    rpm = ", ".join(f"{one:g}" for one in RPM_OF_SLOPES)
-    table = Table(
-        *(
-            "one input at a time, on the downstop at 458 rpm, KTAS",
-            "symmetric",
-            "",
-            "antisymmetric",
-            "",
-            "Hz, name",
-        ),
-        *("slope sym.", "anti.", "-20 % sym.", "anti.", "off sym.", "anti."),
-        title=f"effect of each input; slopes, kt/rpm, over {rpm} rpm; kt",
-    )
-    table.add_row(
-        "Bell (NASA TM X-62,407)", "400", "", "465", "", "", "-0.23", "-0.11", "-34", "-10", "-19", "-39"
-    )
-    table.add_row("Acree, Peyran and Johnson 1999", "", "", f"{ACREE}", *[""] * 7)
-    first: Effect | None = None
-    for name, change in changes():
-        found = effect(change)
-        first = first or found
-        table.add_row(name, *(_effect_cells(found, first) if not found.reason else ("refused", *[""] * 10)))
-        if found.reason:
-            console.print(f"{name}: refused. {found.reason}", highlight=False)
-    console.print(table)
-    return first.at_458 if first else ()
-
-
-def _effect_cells(found: Effect, first: Effect) -> Iterable[str]:
-    for one, before in zip(found.at_458, first.at_458, strict=True):
-        yield written(one.airspeed, ".0f")
-        yield written(one.airspeed - before.airspeed, "+.0f") if found is not first else ""
-    antisymmetric = found.at_458[1]
-    yield (
-        f"{antisymmetric.frequency:.1f} {antisymmetric.mode.removeprefix('antisymmetric ')}"
-        if antisymmetric.mode
-        else ""
-    )
-    for layout, pair in (("+.2f", found.slope), ("+.0f", found.softer), ("+.0f", found.off)):
-        yield from (written(value, layout) for value in pair)
-
-
 def main() -> None:
-    """Print all tables, or those of the points of a file."""
+    """Print all tables, or those of the points of a file, and write those of the page into it."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument(
         "--points", default=PUBLISHED, help="CSV file of points, by default the 40 published ones"
     )
+    parser.add_argument("--page", action="store_true", help="write what sets the boundaries into its page")
     asked = parser.parse_args()
     console = Console(width=170)
     found = beside(read(asked.points))
@@ -314,8 +251,10 @@ def main() -> None:
     print_summary(console, found)
     print_changes(console, found)
     if asked.points == PUBLISHED:
-        print_what_sets(console, print_effects(console))
-        console.print(WHAT_SETS)
+        for table in what_sets(effect(Change()).at_458):
+            console.print(table.printed("at 458 rpm"))
+            if asked.page:
+                table.write("xv15-aircraft.md")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 """What each input of the whole XV-15 does to its stability boundaries, one input at a time.
 
+    python -m benchmarks.bell_effects           # prints the table
+    python -m benchmarks.bell_effects --page    # and writes it into docs/xv15-aircraft.md
+
 A row has the first boundary of each symmetry at 458 rpm, how both fall with the rotor speed, and what 20 % less
 stiffness of wing and pylon and the loss of the downstop do. The ranges are judgements of what an input could be,
 not measured scatter.
@@ -7,17 +10,29 @@ not measured scatter.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+from rich.console import Console
 
 import proprotor as pp
 from benchmarks.bell_points import CONFIGURATIONS, SYMMETRIES, Crossing, boundaries, first_crossings
+from benchmarks.page_table import PageTable, page_is_wanted
 
 RPM_OF_SLOPES = (380.0, 458.0, 517.0)  # where Bell has points of both modes below a tip Mach number of .9
 _AT = RPM_OF_SLOPES.index(458.0)
 _ON, _SOFT, _OFF = CONFIGURATIONS
+ACREE = 335  # kt, antisymmetric beam at 458 rpm: Acree, Peyran and Johnson 1999, another analysis
+_HEADINGS = (
+    "on the downstop at 458 rpm, KTAS",
+    *("symmetric", "antisymmetric", "its mode", "slope, kt/rpm, sym.", "anti."),
+    *("20 % less stiff, kt, sym.", "anti.", "off the downstop, kt, sym.", "anti."),
+)
+_OTHERS = [
+    ("Bell (NASA TM X-62,407)", "400", "465", "", "-0.23", "-0.11", "-34", "-10", "-19", "-39"),
+    ("Acree, Peyran and Johnson 1999", "", f"{ACREE}", *[""] * 7),
+]
 
 
 class Change(NamedTuple):
@@ -146,3 +161,41 @@ def slope_of(rpm: Any, airspeeds: Any) -> float:
     rpm, airspeeds = np.asarray(rpm, dtype=float), np.asarray(airspeeds, dtype=float)
     there = np.isfinite(airspeeds)
     return float(np.polyfit(rpm[there], airspeeds[there], 1)[0]) if there.sum() > 1 else np.nan
+
+
+def written(value: float, layout: str) -> str:
+    """Return a number as text; "none" for NaN."""
+    return "none" if np.isnan(value) else format(value, layout)
+
+
+def table() -> PageTable:
+    """Return the boundaries with each input changed, and those of two other analyses."""
+    found = {name: effect(change) for name, change in changes()}
+    first = next(iter(found.values()))
+    rows = [
+        (name, *(_cells(own, first) if not own.reason else ("refused", *[""] * (len(_HEADINGS) - 2))))
+        for name, own in found.items()
+    ]
+    return PageTable("python -m benchmarks.bell_effects --page", _HEADINGS, _OTHERS + rows)
+
+
+def _cells(found: Effect, first: Effect) -> Iterable[str]:
+    for one, before in zip(found.at_458, first.at_458, strict=True):
+        yield f"{written(one.airspeed, '.0f')} ({written(one.airspeed - before.airspeed, '+.0f')})"
+    antisymmetric = found.at_458[1]
+    yield antisymmetric.mode.removeprefix("antisymmetric ")
+    for layout, pair in (("+.2f", found.slope), ("+.0f", found.softer), ("+.0f", found.off)):
+        yield from (written(value, layout) for value in pair)
+
+
+def main() -> None:
+    """Print the table, and write it into its page."""
+    page, found = page_is_wanted(__doc__), table()
+    rpm = ", ".join(f"{one:g}" for one in RPM_OF_SLOPES)
+    Console(width=170, highlight=False).print(found.printed(f"one input at a time; slopes over {rpm} rpm"))
+    if page:
+        found.write("xv15-aircraft.md")
+
+
+if __name__ == "__main__":
+    main()

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import IO, Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.bell_boundaries import ACREE, below, root_mean_square
-from benchmarks.bell_effects import slope_of
+from benchmarks.bell_boundaries import below, root_mean_square
+from benchmarks.bell_effects import ACREE, slope_of
 from benchmarks.bell_points import (
     CONFIGURATIONS,
     HIGH_MACH,
@@ -24,6 +24,7 @@ from benchmarks.bell_points import (
 )
 from proprotor.plots.boundary_against import plot_boundary_against
 from proprotor.tables.points import Column, Points, read_points
+from proprotor.typing import Axes
 
 FIGURES = {
     "on the downstop": "xv15-aircraft-on.png",
@@ -58,8 +59,8 @@ def section() -> Iterator[str]:
     yield "`xv15-aircraft` and `xv15-aircraft-off`, with the published control stiffness, at sea level, in KTAS. No"
     yield "input was matched to a point. Bell's points are calculations of 1975: a difference is one from another"
     yield "analysis, not from a test. `python -m benchmarks.bell_boundaries` prints these tables, the frequency bands"
-    yield "that say which root is meant, what each input does, and what sets slopes; [the page on the"
-    yield "aircraft](xv15-aircraft.md) discusses them."
+    yield "that say which root is meant, and what sets slopes; [the page on the aircraft](xv15-aircraft.md) discusses"
+    yield "them."
     yield ""
     for name, mode in dict.fromkeys((point.configuration, point.mode) for point in judged.found):
         yield from _points_table(name, mode, judged.of(name, mode))
@@ -76,7 +77,7 @@ def section() -> Iterator[str]:
         yield f"![Boundaries over the rotor speed with Bell's points: {name}](figures/{picture})"
         yield ""
     yield "Modes of the wing alone are drawn. Those of the rotor become unstable near the dotted line, where the tip"
-    yield "Mach number reaches 1: from 440 kt on at 610 rpm, on the downstop."
+    yield "Mach number reaches 1."
     yield ""
 
 
@@ -130,20 +131,18 @@ def _summary(judged: Judged) -> Iterator[str]:
     yield ""
 
 
-def draw(name: str, file: IO[bytes], dpi: int = 110) -> None:
-    """Draw the boundaries of a configuration over the rotor speed, with Bell's points, into a PNG file."""
+def draw(name: str) -> Axes:
+    """Draw the boundaries of a configuration over the rotor speed, with Bell's points."""
     found = CONFIGURATIONS[name].case().boundary_against({"operation.rotor_speed": _SHOWN * RPM}, SCAN)
     hertz, speed = found.frequency / (2 * np.pi), found.airspeed / (1852 / 3600)
     shown = found.onset & ((hertz > _WING[0]) & (hertz < _WING[1]) & (speed < _LIMITS[1])).any(
         "operation.rotor_speed"
     )
-    ax = plot_boundary_against(
+    return plot_boundary_against(
         found.isel(branch=np.flatnonzero(shown)),
         points=_points_of(read_points(PUBLISHED), name),
         limits=_LIMITS,
     )
-    figure: Any = ax.get_figure()
-    figure.savefig(file, format="png", dpi=dpi, metadata={"Software": None})
 
 
 def _points_of(points: Points, name: str) -> Points:

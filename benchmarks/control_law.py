@@ -12,11 +12,14 @@ the airspeeds costs more than any that does not. The search sees neither the air
 from __future__ import annotations
 
 import argparse
+from functools import partial
 
 import numpy as np
 from scipy.optimize import differential_evolution
 
 import proprotor as pp
+from benchmarks import pictures
+from proprotor.files.output import write_whole
 from proprotor.model.closed_loop import close_loops
 from proprotor.model.provenance import reservations
 from proprotor.model.sensors import sensor
@@ -96,8 +99,8 @@ def main() -> None:
     if given.figure:
         case = pp.load_case(given.deck)
         found = case.margins(np.arange(140.0, 401.0, 5.0) * KNOT)
-        figure = plot_margins(found, title=case.title, footer=" ".join(reservations(case)))
-        figure.savefig(given.figure, dpi=110)
+        draw = partial(plot_margins, found, title=case.title, footer=" ".join(reservations(case)))
+        write_whole(given.figure, partial(pictures.save, draw))
         return
     found = differential_evolution(
         Search(pp.load_case("xv15")),

@@ -19,6 +19,8 @@ import jupytext
 import matplotlib
 import nbformat
 
+from benchmarks.pictures import in_few_colours
+
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 PAGE = EXAMPLES / "index.md"
 HEAD = """<!-- Written by python -m benchmarks.examples; edit the scripts. -->
@@ -30,8 +32,11 @@ Put the files of an example into a folder, and in an environment with proprotor 
 script, `python changed-rotor.py`, or open the notebook in Jupyter. An example takes seconds, and draws the picture
 below its files.
 
-None of them runs in the browser without installing: NumPy and SciPy for browsers come from the servers of Pyodide
-alone, and no page of this site fetches anything from elsewhere.
+None of them runs in the browser without installing. Python for browsers, Pyodide 314.0.7 when this was looked up in
+December 2026, has NumPy, SciPy and all other compiled packages that proprotor needs, in versions that it takes, but for
+psutil, of which there is no build for browsers. The builds of NumPy and SciPy stand on the servers of Pyodide alone and
+in neither of the indexes of Python and of JavaScript packages, so that a site that brings all along cannot be made of
+these; and no page of this site fetches anything from elsewhere.
 """
 
 
@@ -85,7 +90,8 @@ def main() -> None:
         script.with_suffix(".ipynb").write_text(notebook_of(script), encoding="utf-8", newline="\n")
         with tempfile.TemporaryDirectory() as folder:
             run(script, Path(folder))
-            shutil.copy(Path(folder) / f"{script.stem}.png", EXAMPLES)
+            picture = in_few_colours(Path(folder) / f"{script.stem}.png")
+            script.with_suffix(".png").write_bytes(picture)
         print(f"made: {script.stem}")
     PAGE.write_text(page(), encoding="utf-8", newline="\n")
 

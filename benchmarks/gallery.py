@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import matplotlib
-from PIL import Image
 
+from benchmarks.pictures import in_few_colours
 from tests.documentation import Runner, blocks, name_of, pages
 
 _SHOWN = re.compile(r"!\[[^\]]*\]\(([^)]+)\)")
@@ -60,13 +60,11 @@ def draw(page: Path) -> Iterator[Path]:
 
 
 def _keep(made: Path, path: Path) -> None:
-    """Keep a picture: a GIF as it is, of others 256 colours, which the eye does not tell from all of them."""
+    """Keep a picture: a GIF as it is, of others few colours."""
     if made.suffix == ".gif":
         path.write_bytes(made.read_bytes())
-        return
-    with Image.open(made) as picture:
-        flat = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    flat.save(path, optimize=True)
+    else:
+        path.write_bytes(in_few_colours(made))
 
 
 def main() -> None:

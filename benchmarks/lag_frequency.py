@@ -1,6 +1,7 @@
 """The lag frequency of the XV-15's rotor: what is published, what Table 1 gives, and what would give each value.
 
-    python -m benchmarks.lag_frequency
+    python -m benchmarks.lag_frequency           # prints the tables and draws the figure
+    python -m benchmarks.lag_frequency --page    # and writes the tables into docs/lag-frequency.md
 
 Frequencies are per revolution at 458 rpm unless a line says otherwise. AIAA-2002-1604 ("the paper"): 1.8 at low speed
 to 1.2 at high speed. Bell, calculated (NASA TM X-62,407): 1.454 to 1.052, and 1.736 measured at one pitch. The springs
@@ -12,19 +13,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 from scipy.optimize import brentq, least_squares, minimize_scalar
 
 import proprotor as pp
+from benchmarks import pictures
+from benchmarks.page_table import PageTable, page_is_wanted
 from benchmarks.paper_figures.blade_state import blade_state, couplings, effective_springs, on_rigid_hub
 from benchmarks.paper_figures.published import PAPER_FREQUENCIES
-from proprotor.files.output import write_whole
-from proprotor.typing import Array
+from proprotor.plots.style import GREY, LABEL_SIZE
+from proprotor.typing import Array, Figure
 from proprotor.units import KNOT
 
 DECKS = ("xv15-uncoupled", "xv15-wing")
@@ -34,9 +35,9 @@ ROTOR, OMEGA = CASE.rotor, CASE.operation.rotor_speed
 RPM = np.pi / 30
 SLUG_FT2, FT_LBF = 1.3558179483314004, 1.3558179483314004  # kg m², N m
 SPEEDS = np.array([50.0, 400.0])  # kt, the ends of the paper's Fig. 14 that the text calls low and high
+KNOTS = np.arange(50.0, 401.0, 50.0)
 SCAN = "50:480:10kt"
 MEASURED = 1.736
-FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "lag-frequency.png"
 
 
 class Target(NamedTuple):
@@ -227,9 +228,10 @@ def candidates() -> Iterator[Changed]:
     by_hub_inertia = ROTOR.lag_inertia / ROTOR.blade_inertia
     yield "springs of Table 1, δs 15°", None, None
     yield "δs 0°", replace(ROTOR, structural_pitch_offset=0.0), None
+    least = np.pi / 2 - pitch_at(400.0)
     yield (
-        "δs 33.6°: the least ν_ζ at 400 kt",
-        replace(ROTOR, structural_pitch_offset=np.pi / 2 - pitch_at(400.0)),
+        f"δs {np.degrees(least):.1f}°, the least uncoupled ν_ζ at 400 kt",
+        replace(ROTOR, structural_pitch_offset=least),
         None,
     )
     yield "ω_ζ0 for 1.8 at 50 kt", inputs()[0].rotor(value_for(inputs()[0], 1.8, paper.pitch[0])[0]), None
@@ -238,8 +240,8 @@ def candidates() -> Iterator[Changed]:
     yield "both springs for the paper's lag", both_springs(paper), None
     yield "both springs for Bell's lag", both_springs(bell), None
     yield "springs and δs nearest to Bell's four", fitted_to_bell().rotor, None
-    yield "paper's lag in a table, no coupling", None, PAPER_FREQUENCIES
-    yield "Bell's table, no coupling", None, replace(BELL, pitch_coupling="none")
+    yield "paper's lag in a table, bent blades do not pitch", None, PAPER_FREQUENCIES
+    yield "Bell's table, bent blades do not pitch", None, replace(BELL, pitch_coupling="none")
     yield "Bell's table, coupling of the springs", None, BELL
 
 
@@ -265,108 +267,118 @@ def flutter(deck: str, changed: Changed, rotor_speed: float | None = None) -> tu
 # Tables -------------------------------------------------------------------------------------------
 
 
+MARK = "python -m benchmarks.lag_frequency --page"
+
+
 def _row(values: Array) -> list[str]:
-    return ["-" if np.isnan(value) else f"{value:.3f}" for value in values]
+    return ["" if np.isnan(value) else f"{value:.3f}" for value in values]
 
 
-def print_published(console: Console) -> None:
-    table = Table("source", "pitch, deg", "lag per rev", "status", title="Published")
-    paper, bell = targets()
-    for target, status in (
-        (paper, "text; the pitches are this rotor's at 50 and 400 kt"),
-        (bell, "calculated"),
-    ):
-        pitches = " to ".join(f"{value:.1f}" for value in np.degrees(target.pitch))
-        table.add_row(target.name, pitches, " to ".join(map(str, target.frequency)), status)
-    table.add_row("whirl stand", "not at hand", str(MEASURED), "measured, rotor speed not at hand")
-    console.print(table)
+def cyclic_lag_in_air(**options: Any) -> Array:
+    """Return the mode of Fig. 14 at `KNOTS`, near enough to each other for the mode to be followed."""
+    return on_rigid_hub(CASE, KNOTS * KNOT, pitch="coupling", **options)["low cyclic lag"]
 
 
-def print_over_pitch(console: Console) -> None:
-    knots = np.array([50.0, 100.0, 150.0, 200.0, 250.0, 300.0, 350.0, 400.0])
-    state = blade_state(CASE, knots * KNOT)
+def over_airspeed() -> PageTable:
+    """Return the lag frequencies of Table 1 at the trims of the windmilling rotor."""
+    state = blade_state(CASE, KNOTS * KNOT)
     pitch = state.structural_pitch - ROTOR.structural_pitch_offset
     _, lag = uncoupled(ROTOR, pitch)
-    coning, cyclic = coupled_on_rigid_hub(ROTOR, pitch)
-    air = on_rigid_hub(CASE, knots * KNOT, pitch="coupling")["low cyclic lag"]
-    table = Table(
-        *("kt", "pitch", "Θ + δs, deg", "ν_ζ uncoupled", "blade, gimbal held", "cyclic lag, vacuum"),
-        *("1 + Fig. 14, airloads", "coning, vacuum"),
-        title="Springs of Table 1, δs 15°",
+    _, cyclic = coupled_on_rigid_hub(ROTOR, pitch)
+    air = cyclic_lag_in_air()
+    headings = (
+        *("kt", "pitch, deg", "Θ + δs, deg", "uncoupled ν_ζ", "blade, gimbal held"),
+        *("cyclic lag of the rotor, vacuum", "1 + Fig. 14: the same with airloads"),
     )
-    alone = blade_alone(ROTOR, state.structural_pitch)
-    columns = np.column_stack([lag, alone, cyclic, 1 + air, coning])
-    for speed, angle, row in zip(knots, np.degrees(pitch), columns, strict=True):
-        table.add_row(f"{speed:.0f}", f"{angle:.1f}", f"{angle + 15:.1f}", *_row(row))
-    console.print(table)
-    turn = np.radians(np.linspace(0, 90, 181))
-    least = lag_frequency(ROTOR, turn - ROTOR.structural_pitch_offset)
-    lower = minimize_scalar(
-        lambda x: float(blade_alone(ROTOR, np.array(x))), bounds=(0, np.pi / 2), method="bounded"
-    )
-    console.print(
-        f"At any structural pitch: uncoupled {least.max():.3f} (0°) to {least.min():.3f} (90°); lower frequency of the "
-        f"blade alone at least {lower.fun:.3f}, at {np.degrees(lower.x):.0f}°."
-    )
-    tabulated = {"structure": "tabulated", "frequencies": PAPER_FREQUENCIES}
-    given = on_rigid_hub(CASE, np.array([100.0, 400.0]) * KNOT, pitch="coupling", **tabulated)[
-        "low cyclic lag"
+    columns = np.column_stack([lag, blade_alone(ROTOR, state.structural_pitch), cyclic, 1 + air])
+    rows = [
+        (f"{speed:.0f}", f"{angle:.1f}", f"{turned:.1f}", *_row(row))
+        for speed, angle, turned, row in zip(
+            KNOTS, np.degrees(pitch), np.degrees(state.structural_pitch), columns, strict=True
+        )
     ]
-    console.print(
-        f"1.8 to 1.2 given as uncoupled frequencies: Fig. 14 falls to {given[1]:.2f} from {given[0]:.2f} at 100 kt."
-    )
+    return PageTable(f"{MARK}: Table 1", headings, rows)
 
 
-def print_definitions(console: Console) -> None:
-    """At the pitches of 50 and 400 kt, and at the structural pitches between which all others lie."""
+def definitions() -> PageTable:
+    """Return what may be called lag frequency at 50 and 400 kt, and at the structural pitches at the ends of all."""
     paper, _ = targets()
     pitch = np.concatenate([paper.pitch, np.array([0.0, np.pi / 2]) - ROTOR.structural_pitch_offset])
     flap, lag = uncoupled(ROTOR, pitch)
     of_flap, of_lag = (part**2 for part in uncoupled(scaled_springs(ROTOR, 1e-12, 1e-12), 0.0))
+    air = cyclic_lag_in_air()[[0, -1]]
+    nowhere = np.full(2, np.nan)
     rows = {
         "rotating, uncoupled: √(K_ζζ/(I_ζΩ²) + eS/I_ζ)": lag,
         "non-rotating over Ω: √(K_ζζ/(I_ζΩ²))": np.sqrt(lag**2 - of_lag),
+        "1 + low cyclic lag mode of the rotor, vacuum": np.append(
+            coupled_on_rigid_hub(ROTOR, paper.pitch)[1], nowhere
+        ),
+        "1 + low cyclic lag mode, airloads (Fig. 14)": np.append(1 + air, nowhere),
         "with I_b: √(K_ζζ/(I_bΩ²) + eS/I_ζ)": np.sqrt(
             of_lag + (lag**2 - of_lag) * ROTOR.lag_inertia / ROTOR.blade_inertia
         ),
-        "rotating, uncoupled, per rev of 565 rpm": lag_frequency(ROTOR, pitch, 565 * RPM),
+        "rotating, uncoupled, per revolution of 565 rpm": lag_frequency(ROTOR, pitch, 565 * RPM),
         "coning, uncoupled": flap,
         "coning with I_b": np.sqrt(of_flap + (flap**2 - of_flap) * ROTOR.flap_inertia / ROTOR.blade_inertia),
-        "coning, uncoupled, per rev of 565 rpm": uncoupled(ROTOR, pitch, 565 * RPM)[0],
+        "coning, uncoupled, per revolution of 565 rpm": uncoupled(ROTOR, pitch, 565 * RPM)[0],
     }
-    table = Table(
-        "definition", "50 kt", "400 kt", "Θ + δs = 0°", "90°", title="Definitions, numbers of Table 1"
+    headings = ("definition, numbers of Table 1", "50 kt", "400 kt", "Θ + δs = 0°", "90°")
+    return PageTable(
+        f"{MARK}: definitions", headings, [(name, *_row(values)) for name, values in rows.items()]
     )
-    for name, values in rows.items():
-        table.add_row(name, *_row(values))
-    console.print(table)
 
 
-def print_single_inputs(console: Console) -> None:
-    for target in targets():
-        low, high = (
-            f"for {value} at {np.degrees(at):.0f}°"
-            for value, at in zip(target.frequency, target.pitch, strict=True)
-        )
-        table = Table("input", "now", low, high, title=f"One input alone, uncoupled frequency: {target.name}")
-        for one in inputs():
-            cells = [f"{one.now / one.scale:.4g} {one.unit}"]
-            for frequency, pitch in zip(target.frequency, target.pitch, strict=True):
-                value, nearest = value_for(one, frequency, float(pitch))
-                cells.append(
-                    f"no value: at best {nearest:.3f}"
-                    if np.isnan(value)
-                    else f"{value / one.scale:.4g} {one.unit}"
-                )
-            table.add_row(one.name, *cells)
-        console.print(table)
-    low_pitch = float(np.asarray(BELL.at)[0])
-    value, _ = value_for(inputs()[0], MEASURED, low_pitch)
-    console.print(
-        f"{MEASURED} at 20° of pitch takes ω_ζ0 = {value:.1f} rad/s; Table 1 gives that frequency at a "
-        f"structural pitch of {_pitch_of(MEASURED, OMEGA):.1f}°, and per revolution of 565 rpm at "
-        f"{_pitch_of(MEASURED, 565 * RPM):.1f}°."
+def single_inputs() -> PageTable:
+    """Return the value that each input alone takes for each published frequency."""
+    ends = [
+        (f"{target.name}: {value} at {np.degrees(at):.0f}°", value, float(at))
+        for target in targets()
+        for value, at in zip(target.frequency, target.pitch, strict=True)
+    ]
+    rows = []
+    for one in inputs():
+        now = f"{one.now / one.scale:.4g} {one.unit}".rstrip()
+        rows.append((one.name, now, *(_value_or_nearest(one, value, at) for _, value, at in ends)))
+    return PageTable(f"{MARK}: single inputs", ("input", "now", *(name for name, _, _ in ends)), rows)
+
+
+def _value_or_nearest(one: Input, frequency: float, pitch: float) -> str:
+    value, nearest = value_for(one, frequency, pitch)
+    return f"at best {nearest:.2f}" if np.isnan(value) else f"{value / one.scale:.3g}"
+
+
+def others() -> PageTable:
+    """Return what else follows from Table 1, and from Bell's frequencies."""
+    turn = np.radians(np.linspace(0, 90, 181))
+    lag = lag_frequency(ROTOR, turn - ROTOR.structural_pitch_offset)
+    lower = minimize_scalar(
+        lambda x: float(blade_alone(ROTOR, np.array(x))), bounds=(0, np.pi / 2), method="bounded"
     )
+    given = cyclic_lag_in_air(structure="tabulated", frequencies=PAPER_FREQUENCIES)
+    spring, _ = value_for(inputs()[0], MEASURED, float(np.asarray(BELL.at)[0]))
+    flap, bell = np.asarray(BELL.flap), np.asarray(BELL.lag)
+    total = ROTOR.flap_inertia * flap**2 + ROTOR.lag_inertia * bell**2
+    rows = {
+        "uncoupled ν_ζ, over all structural pitches": f"{lag.max():.3f} (0°) to {lag.min():.3f} (90°)",
+        "lower frequency of a blade that flaps and lags, least": f"{lower.fun:.3f}",
+        "share of the centrifugal force in ν_ζ²": f"{_centrifugal_share():.3f}",
+        "Fig. 14 with uncoupled 1.8 to 1.2 given, at 100 and 400 kt": " and ".join(
+            f"{value:.2f}" for value in given[[1, -1]]
+        ),
+        "I_ζ/I_b": f"{ROTOR.lag_inertia / ROTOR.blade_inertia:.3f}",
+        "(458/565)²": f"{(458 / 565) ** 2:.3f}",
+        f"ω_ζ0 for {MEASURED} at 20° of pitch": f"{spring:.1f} rad/s",
+        f"structural pitch of {MEASURED} at 458 rpm": f"{_pitch_of(MEASURED, OMEGA):.1f}°",
+        "the same per revolution of 565 rpm": f"{_pitch_of(MEASURED, 565 * RPM):.1f}°",
+        "I_β ν_β² + I_ζ ν_ζ² of Bell's frequencies, at 50° over that at 20°": f"{total[1] / total[0]:.3f}",
+    }
+    return PageTable(f"{MARK}: others", ("what follows", "value"), list(rows.items()))
+
+
+def _centrifugal_share() -> float:
+    """Return the part of ν_ζ² that no spring makes."""
+    return ROTOR.lag_hinge_offset * ROTOR.lag_first_moment / ROTOR.lag_inertia
 
 
 def _pitch_of(frequency: float, rotor_speed: float) -> float:
@@ -379,31 +391,22 @@ def _pitch_of(frequency: float, rotor_speed: float) -> float:
     )
 
 
-def print_fits(console: Console) -> None:
-    columns = ("ω_β0", "ω_ζ0", "δs", "R_β", "R_ζ", "coning at both ends", "lag at both ends", "rms miss")
-    table = Table(
-        "springs", *columns, title="Two inputs and more; frequencies of the last three coupled, in a vacuum"
-    )
+def fits() -> PageTable:
+    """Return the springs that give two frequencies exactly, and those nearest to Bell's four."""
+    rows = []
     paper, bell = targets()
     for name, target in (("both for the paper's lag", paper), ("both for Bell's lag", bell)):
         rotor = both_springs(target)
-        table.add_row(name, *_springs_of(rotor), *_ends(uncoupled(rotor, target.pitch)), "0")
+        rows.append((name, *_springs_of(rotor), *_ends(uncoupled(rotor, target.pitch)), "0"))
     for name, fit in (
         ("nearest to Bell's four, 20 to 50°", fitted_to_bell()),
-        ("nearest to Bell's four, R free", fitted_to_bell(fractions=True)),
+        ("the same with R_β and R_ζ free", fitted_to_bell(fractions=True)),
         ("nearest to Bell's four, 10 to 60°", fitted_to_bell((10, 60))),
     ):
         found = coupled_on_rigid_hub(fit.rotor, fit.pitch)
-        table.add_row(name, *_springs_of(fit.rotor), *_ends(found), f"{fit.root_mean_square:.3f}")
-    console.print(table)
-
-
-def print_sum(console: Console) -> None:
-    """The sum that turning alone keeps: with R = 1 the springs of flap and lag make K_ββ + K_ζζ = K_β + K_ζ."""
-    lag, flap = np.asarray(BELL.lag), np.asarray(BELL.flap)
-    total = ROTOR.flap_inertia * flap**2 + ROTOR.lag_inertia * lag**2
-    text = "I_β ν_β² + I_ζ ν_ζ² is the same at each pitch for uncoupled springs that only turn; Bell's at 50° is "
-    console.print(f"{text}{total[1] / total[0]:.3f} of Bell's at 20°.")
+        rows.append((name, *_springs_of(fit.rotor), *_ends(found), f"{fit.root_mean_square:.3f}"))
+    columns = ("ω_β0", "ω_ζ0", "δs, deg", "R_β", "R_ζ", "coning at both ends", "lag at both ends", "rms miss")
+    return PageTable(f"{MARK}: fits", ("springs", *columns), rows)
 
 
 def _springs_of(rotor: pp.Rotor) -> Iterator[str]:
@@ -419,44 +422,47 @@ def _ends(found: tuple[Array, Array]) -> Iterator[str]:
     return (" to ".join(_row(values)) for values in found)
 
 
-def print_flutter(console: Console) -> None:
-    columns = [f"{deck}, {which}" for deck in DECKS for which in ("first", "wing")]
-    table = Table("springs", *columns, title="First onset in kt (pitch equations, damping of sections)")
-    for changed in candidates():
-        table.add_row(changed[0], *(cell for deck in DECKS for cell in flutter(deck, changed)))
-    console.print(table)
+def first_and_wing(found: tuple[str, str]) -> str:
+    """Return the first onset, and in brackets the first of a wing mode where that is another."""
+    first, wing = found
+    return first if first == wing else f"{first} ({wing})"
 
 
-def print_bell_band(console: Console) -> None:
-    """Bell's table with its inputs at the ends of what is known, on the first deck."""
-    table = Table("change", "first", "wing", title=f"Bell's table, coupling of the springs, {DECKS[0]}")
+def candidate_boundaries() -> PageTable:
+    """Return the first onset with each explanation."""
+    rows = [
+        (changed[0], *(first_and_wing(flutter(deck, changed)) for deck in DECKS)) for changed in candidates()
+    ]
+    return PageTable(f"{MARK}: boundary", ("springs", *(f"`{deck}`" for deck in DECKS)), rows)
+
+
+def bell_band() -> PageTable:
+    """Return the onsets with Bell's table, its inputs at the ends of what is known, on the first deck."""
     read = 15 / 458  # per rev
     lag, flap = np.asarray(BELL.lag), np.asarray(BELL.flap)
     tables = {
         "as in the deck": BELL,
-        "lag - 15 cpm": replace(BELL, lag=lag - read),
-        "lag + 15 cpm": replace(BELL, lag=lag + read),
-        "coning - 15 cpm": replace(BELL, flap=flap - read),
-        "coning + 15 cpm": replace(BELL, flap=flap + read),
+        "lag - 15 cycles per minute": replace(BELL, lag=lag - read),
+        "lag + 15 cycles per minute": replace(BELL, lag=lag + read),
+        "coning - 15 cycles per minute": replace(BELL, flap=flap - read),
+        "coning + 15 cycles per minute": replace(BELL, flap=flap + read),
         "pitch from 10 to 50°": replace(BELL, at=np.radians([10, 50])),
         "pitch from 20 to 60°": replace(BELL, at=np.radians([20, 60])),
         "pitch from 10 to 60°": replace(BELL, at=np.radians([10, 60])),
     }
-    for name, given in tables.items():
-        table.add_row(name, *flutter(DECKS[0], (name, None, given)))
+    rows = [(name, *flutter(DECKS[0], (name, None, given))) for name, given in tables.items()]
     for stiffness in (11000, 14000, 22400):
         rotor = replace(ROTOR, control_stiffness=stiffness * FT_LBF)
-        table.add_row(f"K_θ {stiffness} ft lbf/rad", *flutter(DECKS[0], ("", rotor, BELL)))
-        table.add_row(
-            f"K_θ {stiffness} ft lbf/rad, springs of Table 1", *flutter(DECKS[0], ("", rotor, None))
-        )
-    console.print(table)
+        for given, springs in ((BELL, ""), (None, ", springs of Table 1")):
+            told = f"K_θ {stiffness:,} ft lbf/rad{springs}"
+            rows.append((told, *flutter(DECKS[0], ("", rotor, given))))
+    return PageTable(f"{MARK}: Bell", ("Bell's table, `xv15-uncoupled`", "first onset", "wing"), rows)
 
 
-def print_couplings(console: Console) -> None:
-    """K_Pβ and K_Pζ of both decks, by their own trims and the slopes of the springs of Table 1."""
+def couplings_at_trim() -> PageTable:
+    """Return K_Pβ and K_Pζ of both decks, by their own trims and the slopes of the springs of Table 1."""
     knots = np.array([100.0, 200.0, 250.0, 300.0, 350.0])
-    table = Table("deck", "", *(f"{speed:.0f} kt" for speed in knots), title="Couplings at trim")
+    rows = []
     for name in (DECKS[0], "xv15-bell-frequencies"):
         case = pp.load_case(name)
         trim = case.linearize(knots * KNOT, pitch="coupling").trim
@@ -467,31 +473,46 @@ def print_couplings(console: Console) -> None:
             trim.lag,
         )
         angles = {"coning, deg": np.degrees(trim.coning), "lag, deg": np.degrees(trim.lag)}
-        rows = angles | {"K_Pβ": found.pitch_flap_coupling, "K_Pζ": found.pitch_lag_coupling}
-        for label, values in rows.items():
-            table.add_row(name, label, *(f"{value:.2f}" for value in values))
-    console.print(table)
+        own = angles | {"K_Pβ": found.pitch_flap_coupling, "K_Pζ": found.pitch_lag_coupling}
+        rows += [(f"`{name}`", label, *(f"{value:.2f}" for value in values)) for label, values in own.items()]
+    return PageTable(f"{MARK}: couplings", ("deck", "at", *(f"{speed:.0f} kt" for speed in knots)), rows)
 
 
-def print_rotor_speeds(console: Console) -> None:
-    """What a table per revolution of the rotor speed of the day gave, and what its springs give."""
-    columns = [f"{deck}, {which}" for deck in DECKS for which in ("first", "wing")]
-    table = Table("table", "rpm", *columns, title="Tables at another rotor speed: first onset in kt")
+def rotor_speeds() -> PageTable:
+    """Return the onsets with a table per revolution of the rotor speed of the day, and with its springs."""
+    rows = []
     for name, given in (
-        ("Bell's, no coupling", replace(BELL, pitch_coupling="none")),
+        ("Bell's, bent blades do not pitch", replace(BELL, pitch_coupling="none")),
         ("Bell's, coupling of the springs", BELL),
-        ("paper's lag", PAPER_FREQUENCIES),
+        ("paper's lag, bent blades do not pitch", PAPER_FREQUENCIES),
         ("paper's lag, coupling of the springs", replace(PAPER_FREQUENCIES, pitch_coupling="springs")),
     ):
         for rpm in (300, 380, 458, 517):
             before = replace(given, at_rotor_speed=rpm * RPM)
-            for label, one in (("per rev", before), ("springs", given)):
-                row = (flutter(deck, ("", None, one), rpm * RPM) for deck in DECKS)
-                table.add_row(f"{name}: {label}", str(rpm), *(cell for pair in row for cell in pair))
-    console.print(table)
+            found = (
+                first_and_wing(flutter(deck, ("", None, one), rpm * RPM))
+                for deck in DECKS
+                for one in (before, given)
+            )
+            rows.append((name, str(rpm), *found))
+    columns = [f"`{deck}`, {which}" for deck in DECKS for which in ("per rev", "springs")]
+    return PageTable(f"{MARK}: rotor speeds", ("table", "rpm", *columns), rows)
 
 
-def draw(axes: Any) -> None:
+TABLES = {
+    over_airspeed: "Springs of Table 1, δs 15°, per rev",
+    others: "What follows from Table 1",
+    definitions: "Definitions",
+    single_inputs: "One input alone, uncoupled frequency",
+    fits: "Two inputs and more; frequencies of the last three coupled, in a vacuum",
+    candidate_boundaries: "First onset in kt (pitch equations, damping of sections)",
+    couplings_at_trim: "Couplings at trim",
+    bell_band: "Bell's table with coupling of the springs: onsets in kt",
+    rotor_speeds: "Tables at another rotor speed: first onset in kt",
+}
+
+
+def draw() -> Figure:
     """Draw lag frequencies against the pitch of the blade: published, and by the springs of Table 1."""
     pitch = np.linspace(0, 60, 61)
     turn = np.radians(pitch)
@@ -499,53 +520,47 @@ def draw(axes: Any) -> None:
     in_air = 1 + on_rigid_hub(CASE, knots * KNOT, pitch="coupling")["low cyclic lag"]
     at = np.degrees(blade_state(CASE, knots * KNOT).structural_pitch - ROTOR.structural_pitch_offset)
     paper, bell = targets()
-    axes.plot(pitch, lag_frequency(ROTOR, turn), "C0", label="Table 1, δs 15°: uncoupled, 458 rpm")
-    axes.plot(pitch, lag_frequency(ROTOR, turn, 565 * RPM), "C0--", label="the same per rev of 565 rpm")
-    axes.plot(pitch, coupled_on_rigid_hub(ROTOR, turn)[1], "C1", label="Table 1: cyclic lag in a vacuum")
-    axes.plot(at, in_air, "C1--", label="Table 1: cyclic lag with airloads, 50 to 400 kt")
+    figure, (axes,) = pictures.panels(1, 7.5, 5.5)
+    cases = (
+        ("springs of Table 1, δs 15°: uncoupled, 458 rpm", pitch, lag_frequency(ROTOR, turn)),
+        ("the same per rev of 565 rpm", pitch, lag_frequency(ROTOR, turn, 565 * RPM)),
+        ("the same springs: cyclic lag in a vacuum", pitch, coupled_on_rigid_hub(ROTOR, turn)[1]),
+        ("with airloads, 50 to 400 kt", at, in_air),
+    )
+    for place, (label, x, y) in enumerate(cases):
+        pictures.draw_case(axes, x, y, place, label)
+    read: dict[str, Any] = {"color": GREY, "linewidth": 1.0, "markerfacecolor": "white", "markersize": 7}
     axes.plot(
-        np.degrees(paper.pitch), paper.frequency, "C2o:", label="the paper's text (pitches of 50 and 400 kt)"
+        np.degrees(paper.pitch),
+        paper.frequency,
+        "o:",
+        label="the paper's text (pitches of 50 and 400 kt)",
+        **read,
     )
-    axes.errorbar(
-        np.degrees(bell.pitch),
-        bell.frequency,
-        yerr=15 / 458,
-        fmt="C3s:",
-        label="Bell, calculated (pitches assumed)",
-    )
-    axes.axhline(MEASURED, color="0.5", linestyle=":", label=f"measured, {MEASURED}, pitch not at hand")
+    told = "Bell, calculated (pitches assumed)"
+    axes.errorbar(np.degrees(bell.pitch), bell.frequency, yerr=15 / 458, fmt="s:", label=told, **read)
+    axes.axhline(MEASURED, color=GREY, linestyle="--", linewidth=1.0)
+    above: dict[str, Any] = {"fontsize": LABEL_SIZE, "ha": "right", "va": "bottom"}
+    axes.text(60, MEASURED + 0.005, f"measured: {MEASURED}, pitch not at hand", **above)
     axes.set(
         xlabel="Pitch of the blade at 0.75 R (deg)",
         ylabel="Lag frequency, rotating axes (per rev)",
         ylim=(1, 2.2),
     )
-    axes.figure.legend(loc="outside lower center", ncols=2, fontsize="small")
-
-
-def write_figure() -> None:
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(7.5, 5.5), layout="constrained")
-    draw(axes)
-    write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))
-    plt.close(figure)
+    axes.legend(loc="lower left")
+    pictures.tell_case(axes, CASE, pitch="coupling")
+    return figure
 
 
 def main() -> None:
-    console = Console(width=150, highlight=False)
-    for show in (
-        *(
-            print_published,
-            print_over_pitch,
-            print_definitions,
-            print_single_inputs,
-            print_fits,
-            print_couplings,
-        ),
-        *(print_flutter, print_bell_band, print_rotor_speeds),
-    ):
-        show(console)
-    write_figure()
+    """Print all tables, draw the figure, and write the tables into the page."""
+    page, console = page_is_wanted(__doc__), Console(width=150, highlight=False)
+    for make, title in TABLES.items():
+        table = make()
+        console.print(table.printed(title))
+        if page:
+            table.write("lag-frequency.md")
+    pictures.write(draw, "lag-frequency.png")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ python -m benchmarks.linkages --page    # and writes the table into docs/theory/
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,12 +14,12 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks import pictures
 from benchmarks.page_table import markdown, page_is_wanted, write_table
-from proprotor.files.output import write_whole
-from proprotor.typing import Array
+from proprotor.plots.style import COLOURS, LABEL_SIZE, TITLE_SIZE
+from proprotor.typing import Array, Figure
 from proprotor.units import KNOT
 
-FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "linkages.png"
 DECKS = ("xv15", "xv15-aircraft")
 SCAN = "200:420:20kt"
 CHANGES = {
@@ -64,22 +63,27 @@ def draw(axes: Any, panel: Panel) -> None:
     for at, pitch, colour in (((0.0, 0.0), 0.0, "0.75"), ((panel.aft, panel.up), panel.pitch, "black")):
         x, y = section(pitch)
         axes.fill(x + at[0], y + at[1], facecolor="none" if colour == "black" else "0.9", edgecolor=colour)
-    axes.annotate("", (panel.aft, panel.up), (0, 0), arrowprops={"arrowstyle": "->", "color": "#0072B2"})
-    axes.annotate("rotation", (-0.75, -0.4), (0.1, -0.46), arrowprops={"arrowstyle": "->"}, fontsize=8)
-    axes.set(title=panel.title, xlim=(-0.9, 1.7), ylim=(-0.6, 1.2), aspect="equal")
-    axes.title.set_fontsize(9)
-    axes.axis("off")
+    axes.annotate("", (panel.aft, panel.up), (0, 0), arrowprops={"arrowstyle": "->", "color": COLOURS[1]})
+    draw_rotation(axes, -0.25, -0.42)
+    axes.set(title=panel.title, xlim=(-0.9, 1.7), ylim=(-0.6, 1.2))
+    axes.title.set(fontsize=TITLE_SIZE - 2, ha="left")
 
 
-def write_figure() -> None:
-    """Write the drawing of all panels, blades seen from the tip, thrust upwards."""
-    import matplotlib.pyplot as plt
+def draw_rotation(axes: Any, x: float, y: float) -> None:
+    """Draw which way the blade turns: to the left of a place, with the word to its right."""
+    axes.annotate("", (x - 0.5, y), (x, y), arrowprops={"arrowstyle": "->"})
+    axes.text(x + 0.04, y, "rotation", fontsize=LABEL_SIZE, va="center")
 
-    figure, row = plt.subplots(1, len(PANELS), figsize=(9, 2.9), layout="constrained")
+
+def draw_panels() -> Figure:
+    """Draw all panels, blades seen from the tip, thrust upwards."""
+    figure, row = pictures.drawing(len(PANELS), 9, 2.9)
     for axes, panel in zip(row, PANELS, strict=True):
         draw(axes, panel)
-    write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))
-    plt.close(figure)
+    pictures.tell(
+        row[0], "Seen from the tip; grey: before the blade moves. Angles are drawn larger than they are."
+    )
+    return figure
 
 
 def changes(deck: str) -> Iterator[tuple[str, dict[str, str]]]:
@@ -107,7 +111,7 @@ def main() -> None:
     for name, cells in found.items():
         table.add_row(name, *cells)
     Console(width=120, highlight=False).print(table)
-    write_figure()
+    pictures.write(draw_panels, "linkages.png")
     if page:
         rows = [(name, *cells) for name, cells in found.items()]
         lines = markdown(["change", *(f"`{deck}`" for deck in DECKS)], rows)

@@ -20,14 +20,15 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
-from benchmarks.linkages import section
+from benchmarks import pictures
+from benchmarks.linkages import draw_rotation, section
 from benchmarks.page_table import markdown, page_is_wanted, write_table
 from proprotor.deck.file import read_tables
-from proprotor.files.output import write_whole
+from proprotor.plots.style import COLOURS
+from proprotor.typing import Figure
 from proprotor.units import KNOT
 
 DATA = Path(__file__).resolve().parent / "data" / "xv15_quarter_chord.csv"
-FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "offsets.png"
 DECKS = ("xv15-mass-distribution", "xv15-wing", "xv15-aircraft")
 SCAN = "150:480:20kt"
 CHORD = 14.0  # in
@@ -71,30 +72,25 @@ def deck(name: str, published: bool, aft: float | None) -> str:
     return "\n".join(lines)
 
 
-def write_figure() -> None:
-    """Write the drawing: a section seen from the tip, leading edge to the left, with both centres aft of its axis."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(6.5, 2.6), layout="constrained")
+def draw() -> Figure:
+    """Draw a section seen from the tip, leading edge to the left, with both centres aft of its axis."""
+    figure, (axes,) = pictures.drawing(1, 6.5, 2.6)
     x, y = section(-0.0)
     axes.fill(x, y, facecolor="0.95", edgecolor="0.4")
     axes.plot([0], [0], "k+", markersize=12)
     axes.annotate("pitch axis", (0, 0), (-0.12, 0.32), arrowprops={"arrowstyle": "-", "lw": 0.6}, fontsize=9)
     for place, height, colour, told in (
-        (0.1, -0.24, "#0072B2", "aerodynamic_center > 0"),
-        (0.22, -0.38, "#D55E00", "mass_offset > 0"),
+        (0.1, -0.38, COLOURS[1], "aerodynamic_center > 0"),
+        (0.22, -0.24, COLOURS[2], "mass_offset > 0"),
     ):
         axes.plot([place], [0], "o", color=colour)
         axes.plot([0, 0, place, place], [0, height, height, 0], lw=0.6, color=colour)
         axes.annotate("", (place, height), (0, height), arrowprops={"arrowstyle": "->", "color": colour})
         axes.text(place + 0.03, height, told, color=colour, va="center", fontsize=9)
-    axes.annotate(
-        "rotation", (-0.62, 0.1), (-0.3, 0.1), arrowprops={"arrowstyle": "->"}, fontsize=8, va="center"
-    )
-    axes.set(xlim=(-0.75, 0.95), ylim=(-0.5, 0.42), aspect="equal")
-    axes.axis("off")
-    write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))
-    plt.close(figure)
+    draw_rotation(axes, -0.3, 0.15)
+    axes.set(xlim=(-0.85, 0.95), ylim=(-0.5, 0.42))
+    pictures.tell(axes, "Seen from the tip. Both places are positive aft of the pitch axis.")
+    return figure
 
 
 def rows() -> Iterator[tuple[str, ...]]:
@@ -117,7 +113,7 @@ def main() -> None:
     for row in found:
         table.add_row(*row)
     Console(width=140, highlight=False).print(table)
-    write_figure()
+    pictures.write(draw, "offsets.png")
     if page:
         lines = markdown(["places on the chord", *(f"`{name}`" for name in DECKS)], found)
         write_table("theory/offsets.md", "python -m benchmarks.offsets --page", lines)

@@ -13,11 +13,33 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import NamedTuple
+
+from rich.table import Table
 
 from proprotor.files.output import write_whole
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 END = "<!-- end of the table -->"
+
+
+class PageTable(NamedTuple):
+    """A table that a benchmark prints, and writes below the mark of this name in a page."""
+
+    mark: str
+    headings: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+    def printed(self, title: str) -> Table:
+        """Return the table as one of a terminal."""
+        table = Table(*self.headings, title=title)
+        for row in self.rows:
+            table.add_row(*row)
+        return table
+
+    def write(self, page: str) -> None:
+        """Put the table into a page of docs/."""
+        write_table(page, self.mark, markdown(self.headings, self.rows))
 
 
 def page_is_wanted(description: str) -> bool:

@@ -9,7 +9,7 @@ Boundaries are those of the average; beside each, the change of the damping of i
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,12 +17,11 @@ from rich.console import Console
 from rich.table import Table
 
 import proprotor as pp
+from benchmarks import pictures
 from benchmarks.page_table import markdown, page_is_wanted, write_table
-from proprotor.files.output import write_whole
-from proprotor.typing import Array
+from proprotor.typing import Array, Figure
 from proprotor.units import KNOT
 
-FIGURE = Path(__file__).resolve().parents[1] / "docs" / "figures" / "tilted-flight.png"
 SCAN = "280:400:20kt"
 ANGLES = (0.0, 2.0, 4.0, 6.0, 8.0, 10.0)  # deg
 LOADS = (-1.0, 0.0, 1.0, 2.0, 2.5)
@@ -90,22 +89,20 @@ def write_page(angles: dict[str, list[Boundary]], loads: list[Boundary]) -> None
         write_table("theory/tilted-flight.md", mark, markdown((name, *COLUMNS), rows(at, found)))
 
 
-def write_figure(angles: dict[str, list[Boundary]], loads: list[Boundary]) -> None:
-    """Write boundaries against shaft angle and load factor."""
-    import matplotlib.pyplot as plt
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained", sharey=True)
-    for (cyclic, found), colour in zip(angles.items(), ("#0072B2", "#D55E00"), strict=True):
-        left.plot(ANGLES, _knots(found), "o-", color=colour, label=LABELS[cyclic])
-    right.plot(LOADS, _knots(loads), "o-", color="#0072B2")
-    left.set(xlabel="shaft angle, deg", ylabel="flutter speed, KTAS")
-    right.set(xlabel="load factor (turn of the hub alone)")
-    left.legend(frameon=False, fontsize=8)
+def draw(case: pp.Case, angles: dict[str, list[Boundary]], loads: list[Boundary]) -> Figure:
+    """Draw boundaries against shaft angle and load factor."""
+    figure, (left, right) = pictures.panels(2, 9, 3.6, sharey=True)
+    for place, (cyclic, found) in enumerate(angles.items()):
+        pictures.draw_case(left, ANGLES, _knots(found), place, LABELS[cyclic])
+    pictures.draw_case(right, LOADS, _knots(loads), 0, "turn of the hub alone")
+    left.set(xlabel="Shaft angle (deg)", ylabel="Flutter speed, KTAS")
+    right.set(xlabel="Load factor (g)")
     for axes in (left, right):
-        axes.grid(alpha=0.3)
         axes.margins(y=0.3)
-    write_whole(FIGURE, lambda file: figure.savefig(file, dpi=110, format="png"))
-    plt.close(figure)
+        axes.legend(loc="upper left", frameon=False)
+    varied = "options beside the defaults: shaft angle, cyclic, load factor"
+    pictures.tell_case(left, case, f"Boundaries of the average over the azimuth; {varied}.")
+    return figure
 
 
 def _knots(found: list[Boundary]) -> Array:
@@ -120,7 +117,7 @@ def main() -> None:
     for cyclic, found in angles.items():
         console.print(table(f"XV-15, {LABELS[cyclic]}", "shaft angle, deg", ANGLES, found))
     console.print(table("XV-15, turn of the hub", "load factor", LOADS, loads))
-    write_figure(angles, loads)
+    pictures.write(partial(draw, case, angles, loads), "tilted-flight.png")
     if page:
         write_page(angles, loads)
 

@@ -7,27 +7,29 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks import bell_section, published_systems
+from benchmarks import bell_section, pictures, published_systems
 from benchmarks.claims import VERDICTS, WING, Claim, all_claims, as_text, first_boundary, mode_boundaries
 from benchmarks.paper_figures import NUMBERS, Analyses, csv_of, make_figure
 from benchmarks.paper_figures.analyses import XV15
-from benchmarks.paper_figures.drawing import draw_intervals, save
+from benchmarks.paper_figures.drawing import draw, intervals
 from benchmarks.paper_figures.input_ranges import V22, WRATS, InputRange
 from benchmarks.paper_figures.input_ranges import XV15 as XV15_RANGES
 from benchmarks.paper_figures.published import XV15_FLUTTER, XV15_MARK
 from benchmarks.paper_figures.sample_band import Band
 from benchmarks.paper_figures.wing_modes import OF_THE_ROTOR
+from benchmarks.pictures import FOLDER
 from benchmarks.semispan_band import as_built, first_of_wing
 from proprotor.files.output import write_whole
+from proprotor.model.provenance import reservations
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE, FOLDER = ROOT / "docs" / "validation.md", ROOT / "docs" / "figures"
-DPI = 110
+PAGE = ROOT / "docs" / "validation.md"
 _BLADES = {XV15: "Table 1", "xv15-mass-distribution": "mass distribution"}
 _PITCH = {
     "couplings": "couplings",
@@ -313,19 +315,16 @@ def main() -> None:
     analyses = Analyses()
     for number in NUMBERS:
         content = make_figure(number, analyses)
-        stem = FOLDER / f"figure-{number:02}"
-        write_whole(stem.with_suffix(".png"), lambda file, it=content: save(it, file, DPI))
-        write_whole(stem.with_suffix(".csv"), lambda file, it=content: file.write(csv_of(it)))
+        stem = f"figure-{number:02}"
+        pictures.write(partial(draw, content), f"{stem}.png")
+        write_whole(FOLDER / f"{stem}.csv", lambda file, it=content: file.write(csv_of(it)))
     rows = xv15_rows(analyses)
-    intervals = [(row.label, row.nominal, *row.band.speed_percentiles) for row in rows]
-    write_whole(
-        FOLDER / "xv15-boundary.png",
-        lambda file: draw_intervals(
-            intervals, XV15_MARK, "Boundary of the XV-15 semispan wing (kt)", file, DPI
-        ),
-    )
+    shown = [(row.label, row.nominal, *row.band.speed_percentiles) for row in rows]
+    notes = (*reservations(analyses.case(XV15)), "Sections turn without damping unless a row says otherwise.")
+    label = "Boundary of the XV-15 semispan wing, KTAS"
+    pictures.write(partial(intervals, shown, XV15_MARK, label, notes), "xv15-boundary.png")
     for name, picture in bell_section.FIGURES.items():
-        write_whole(FOLDER / picture, lambda file, it=name: bell_section.draw(it, file, DPI))
+        pictures.write(partial(bell_section.draw, name), picture)
     text = page(analyses, rows, all_claims(analyses))
     write_whole(PAGE, lambda file: file.write(text.encode()))
     print(f"Wrote {PAGE.relative_to(ROOT)} and {FOLDER.relative_to(ROOT)}")

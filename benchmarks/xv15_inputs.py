@@ -1,6 +1,7 @@
 """What every doubtful input of the XV-15 does to its stability boundary, alone and together.
 
-    python -m benchmarks.xv15_inputs
+    python -m benchmarks.xv15_inputs           # prints the tables
+    python -m benchmarks.xv15_inputs --page    # and writes them into docs/xv15-effects.md
 
 Ranges are judgements of what an input could be, not measured scatter. The boundary is the lowest airspeed at
 which a wing mode loses its damping, with the pitch equations and all else as the model has it by default.
@@ -14,14 +15,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 import proprotor as pp
+from benchmarks.page_table import PageTable, page_is_wanted
+from benchmarks.paper_figures.blade_state import blade_state
 from benchmarks.xv15_boundary import WING, as_text, boundaries, lowest_of_wing
 from proprotor.rotor.rotor import MASS_INTEGRALS
 from proprotor.support.normal_modes import HUB_AXES
+from proprotor.units import KNOT
 
 PUBLISHED_BOUNDARIES = "published: 285 kt (Nixon) to 305 kt (Johnson), elastic blades on the semispan wing"
+MARK = "python -m benchmarks.xv15_inputs --page"
 DEG, FT = np.pi / 180, 0.3048
 FT_LBF = SLUG_FT2 = 4.4482216152605 * FT
 
@@ -222,47 +226,79 @@ def groups(found: list[Effect]) -> dict[str, list[Effect]]:
     not_published = [effect for effect in found if effect.input.status != "published"]
     wing = {one.name for one in wing_inputs()}
     return {
-        "wing": [effect for effect in found if effect.input.name in wing],
+        "of the wing": [effect for effect in found if effect.input.name in wing],
         "neither published nor calibrated": [e for e in not_published if e.input.status != "calibrated"],
         "not published": not_published,
-        "all": found,
+        "all of the table": found,
     }
 
 
-def print_alone(console: Console, found: list[Effect]) -> None:
-    title = f"boundary of the wing {found[0].baseline:.0f} kt; with one input at an end of its range"
-    table = Table("input", "status", "from", "to", "kt", "kt", title=title)
+def alone(found: list[Effect]) -> PageTable:
+    """Return the boundary at both ends of the range of each input."""
+    rows = []
     for effect in found:
         name, status, (low, _), (high, _) = effect.input
         speeds = ("not possible" if np.isnan(speed) else as_text(speed) for speed in effect.boundaries)
-        table.add_row(name, status, low, high, *speeds)
-    console.print(table)
+        rows.append((name, status, low, high, *speeds))
+    return PageTable(f"{MARK}: alone", ("input", "status", "from", "to", "kt, from", "to"), rows)
 
 
-def print_together(console: Console, case: pp.Case, found: list[Effect]) -> None:
-    columns = ("inputs", "number", "wing, root of squares", "wing, all at worst", "rotor, all at worst")
-    table = Table(*columns, title="inputs together: boundary, kt")
+def together(case: pp.Case, found: list[Effect]) -> PageTable:
+    """Return the boundary with the inputs of each group together."""
+    rows = []
     for name, group in groups(found).items():
         independent = group[0].baseline - np.sqrt(sum(effect.lowering**2 for effect in group))
-        table.add_row(name, str(len(group)), as_text(independent), *map(as_text, combined(case, group)))
-    console.print(table)
+        rows.append((name, str(len(group)), as_text(independent), *map(as_text, combined(case, group))))
+    columns = ("number", "wing, root of squares", "wing, all at worst", "rotor alone, all at worst")
+    return PageTable(f"{MARK}: together", ("inputs together (those that lower the boundary)", *columns), rows)
 
 
-def print_one_after_another(console: Console, case: pp.Case, group: list[Effect]) -> None:
-    table = Table("and", "wing", "rotor", title="not published, one more in each row: boundary, kt")
+def one_after_another(case: pp.Case, group: list[Effect]) -> PageTable:
+    """Return the boundary with one more input at its worst in each row."""
+    rows = []
     for count, effect in enumerate(group, start=1):
         end, _ = effect.worst
-        table.add_row(f"{effect.input.name} {end}", *map(as_text, combined(case, group[:count])))
-    console.print(table)
+        rows.append((f"{effect.input.name} {end}", *map(as_text, combined(case, group[:count]))))
+    return PageTable("", ("and", "wing", "rotor"), rows)
+
+
+def control_stiffness(case: pp.Case) -> PageTable:
+    """Return the boundaries with the softest control system of the range, and with those calibrated at two speeds."""
+    own = case.rotor.control_stiffness
+    at_300 = float(blade_state(case, 300 * KNOT).pitch_lag_coupling[0])
+    stiffnesses = {
+        "the softest of the range": 5000 * FT_LBF,
+        "K_Pζ = -0.3 at 300 kt": own * at_300 / -0.3,  # couplings are inversely proportional to it
+        "K_Pζ = -0.3 at the boundary, as in the deck": own,
+    }
+    rows = []
+    for name, stiffness in stiffnesses.items():
+        found = boundaries(rotor(control_stiffness=stiffness)(case))
+        speeds = (as_text(lowest_of_wing(found)), as_text(found["rotor"]))
+        rows.append((name, f"{stiffness / FT_LBF:,.0f}", *speeds))
+    return PageTable(
+        f"{MARK}: control stiffness", ("control system", "K_θ, ft lbf/rad", "wing, kt", "rotor, kt"), rows
+    )
 
 
 def main() -> None:
-    console = Console(width=110, highlight=False)
+    """Print all tables, and write those of the page into it."""
+    page, console = page_is_wanted(__doc__), Console(width=110, highlight=False)
     case = pp.load_case("xv15-uncoupled")
     found = effects(case)
-    print_alone(console, found)
-    print_together(console, case, found)
-    print_one_after_another(console, case, groups(found)["not published"])
+    tables = {
+        f"boundary of the wing {found[0].baseline:.0f} kt; with one input at an end of its range": alone(
+            found
+        ),
+        "inputs together: boundary, kt": together(case, found),
+        "control stiffness alone": control_stiffness(case),
+    }
+    for title, table in tables.items():
+        console.print(table.printed(title))
+        if page:
+            table.write("xv15-effects.md")
+    last = one_after_another(case, groups(found)["not published"])
+    console.print(last.printed("not published, one more in each row: boundary, kt"))
     console.print(PUBLISHED_BOUNDARIES)
 
 

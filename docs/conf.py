@@ -38,6 +38,9 @@ templates_path = ["templates"]
 autosummary_generate = True
 autodoc_typehints = "none"  # docstrings tell types, with shapes and units
 autodoc_member_order = "bysource"
+autodoc_preserve_defaults = (
+    True  # the name of a default in place of its value, which may be an object with an address
+)
 numpydoc_show_class_members = False
 nitpicky = True
 smartquotes = False  # two hyphens of an option stay two

@@ -20,6 +20,7 @@ from benchmarks.paper_figures.published import (
 )
 from benchmarks.paper_figures.wing_modes import WingModes
 from proprotor.errors import InputError
+from proprotor.model import stamp
 from proprotor.model.doubts import MARK, footnotes, marked
 from proprotor.typing import Array
 from proprotor.units import KNOT
@@ -114,7 +115,8 @@ def _damping_figure(number: int, figure: _Damping, analyses: Analyses) -> Conten
     for variant, label in figure.curves.items():
         wing = analyses.wing(figure.deck, variant)
         legend = f"{label}: {_boundary_in_words(wing, figure.mode, figure.x_limits[1])}"
-        curves.append(Curve(variant, knots, wing.damping(figure.mode), legend))
+        boundary = wing.speed(figure.mode) if figure.mode in wing.onsets else np.nan
+        curves.append(Curve(variant, knots, wing.damping(figure.mode), legend, boundary))
     return Content(
         number=number,
         title=f"{figure.what}: {_TITLES[figure.mode]} mode",
@@ -125,6 +127,7 @@ def _damping_figure(number: int, figure: _Damping, analyses: Analyses) -> Conten
         curves=tuple(curves),
         band=_band(figure, analyses) if figure.with_band else None,
         marks=(XV15_MARK,) if figure.deck == XV15 else (),
+        is_damping=True,
         **_reservations(analyses, figure.deck),
     )
 
@@ -160,7 +163,7 @@ def _reservations(analyses: Analyses, deck: str) -> dict[str, Any]:
         _UNDAMPED,
         wing.sweep.attrs["reservations"],
         *(f"{MARK} {line}" for line in footnotes(wing.crossings.doubts, "kt", KNOT)),
-        f"Case {case.name} ({wing.sweep.attrs['deck']}).",
+        stamp.line(wing.sweep.attrs),
     ]
     if deck != XV15:  # the XV-15's warning is on its mass integrals, which do not move the boundary
         notes.insert(0, case.warnings[0])

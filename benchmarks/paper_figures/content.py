@@ -26,12 +26,15 @@ class Curve:
         In kt, and in the unit of the figure; NaN where a point failed.
     label : str
         Text of the legend; the name where the label is empty.
+    boundary : float
+        Airspeed in kt at which a damping falls through zero; NaN without one.
     """
 
     name: str
     airspeed: Array
     values: Array
     label: str = ""
+    boundary: float = np.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +79,8 @@ class Content:
         Sentences on what the figure rests on.
     assumed : bool
         Whether any input was assumed.
+    is_damping : bool
+        Whether what lies below zero is unstable.
     """
 
     number: int
@@ -90,6 +95,7 @@ class Content:
     points: tuple[tuple[float, float, str], ...] = ()
     notes: tuple[str, ...] = ()
     assumed: bool = False
+    is_damping: bool = False
 
 
 def csv_of(content: Content) -> bytes:

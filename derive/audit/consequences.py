@@ -4,7 +4,7 @@ A term is dropped, or put back, by deriving the modules again that have it. A si
 matrix. A number of the print that no rotor can have goes into a rotor without checks. The boundary is the lowest speed
 at which a mode loses its damping.
 
-No other module of `derive` imports the runtime, and this one does by its public names.
+No other module of `derive` computes with the runtime, and this one does by its public names.
 """
 
 from __future__ import annotations

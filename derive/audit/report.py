@@ -43,6 +43,8 @@ LETTERS = dict(
     )
 )
 
+_ADDENDS = 5  # of a sum in one line of a column
+
 Row = tuple[str, ...]
 
 
@@ -225,17 +227,28 @@ def _markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> 
 
 
 def _derived_by(number: str) -> str:
-    """Return the name of the counterpart with a link to its place in the index of equations."""
+    """Return the name of the counterpart, without its module, with a link to its place in the index of equations."""
     known = {str(key): key for key in COUNTERPARTS}
-    name = "tables.audit_table"
+    name = "audit_table"
     if number in known:
         function = COUNTERPARTS[known[number]]
-        name = f"counterparts.{getattr(function, 'func', function).__name__}"
+        name = getattr(function, "func", function).__name__
     return f"[`{name}`](equations.md#{anchor(heading(known.get(number, number)))})"
 
 
 def _math(expression: sp.Expr) -> str:
     return f"${sp.latex(expression, symbol_names=latex_names())}$"
+
+
+def _sum_in_lines(expression: sp.Expr) -> str:
+    """Write a long sum in lines that fit a column."""
+    addends = expression.as_ordered_terms()
+    lines = [
+        sp.Add(*addends[first : first + _ADDENDS], evaluate=False)
+        for first in range(0, len(addends), _ADDENDS)
+    ]
+    first, *rest = map(_math, lines)
+    return "<br>".join([first, *(line if line.startswith("$-") else f"$+{line[1:]}" for line in rest)])
 
 
 def _conflicts() -> list[str]:
@@ -254,7 +267,7 @@ def _absences() -> list[str]:
             terms = [t for t in result.of(ABSENT_FROM_PRINT) if t.note == note]
             for part in dict.fromkeys(t.part for t in terms):
                 total = sp.Add(*(t.derived * t.term for t in terms if t.part == part))
-                rows.append((number, part, _math(sp.factor(total)), note or "see Conflicts"))
+                rows.append((number, part, _sum_in_lines(sp.factor(total)), note or "see Conflicts"))
     return _markdown_table(("equation", "part", "derived", "dropped term"), rows)
 
 

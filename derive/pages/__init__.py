@@ -13,7 +13,8 @@ written by a command.
 | `index` | docs/equations.md, by ``python -m derive.pages.index`` |
 | `glossary` | docs/symbols.md, by ``python -m derive.pages.glossary`` |
 
-The modules may import anything of `derive`. Nothing else in `derive` imports them.
+The modules may import anything of `derive`, and of the runtime the style of its plots alone. Nothing else in `derive`
+imports them.
 """
 
 __all__ = ["chain", "display", "drawings", "figures", "glossary", "index", "notebooks"]

@@ -35,6 +35,7 @@ from derive.audit.printed import notation as n
 from derive.audit.printed.flap import nu_beta_squared, radius
 from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
+from proprotor.plots.style import in_style
 
 # From a notebook, and rewritten where a page is rendered into docs/notebooks.
 INDEX = "../docs/equations.md"
@@ -52,10 +53,13 @@ class Shown:
 
 
 class Picture:
-    """A figure that a notebook renders. Its text is the first line of the docstring of the function that draws it."""
+    """A figure that a notebook renders, drawn under the style sheet of the runtime's plots.
+
+    Its text is the first line of the docstring of the function that draws it.
+    """
 
     def __init__(self, draw: Callable[[], Figure]):
-        self.figure, self.alt = draw(), (draw.__doc__ or "").partition("\n")[0]
+        self.figure, self.alt = in_style(draw)(), (draw.__doc__ or "").partition("\n")[0]
 
     def _repr_png_(self) -> tuple[bytes, dict[str, str]]:
         drawn, small = io.BytesIO(), io.BytesIO()

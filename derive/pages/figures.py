@@ -1,7 +1,8 @@
 """Figures of the notebooks: what the XV-15 does with the print and with the derivation.
 
 Curves come from the derivation's expressions, the generated functions and the audit's consequences; a figure only lays
-them out.
+them out, in the style sheet and with the small print of the runtime's plots. `display.Picture` calls each function of
+this module under the style sheet.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import sympy as sp
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from derive import flap_lag_springs
 from derive import symbols as s
@@ -26,16 +27,19 @@ from derive.audit.counterparts import frequency_squared
 from derive.audit.printed import TABLES
 from derive.audit.printed.tables import PrintedTable
 from derive.inertia import dependent_inertias
+from proprotor.plots import rests_on
+from proprotor.plots.style import COLOURS, LABEL_SIZE, line_style
 
 Array = NDArray[Any]
-BLACK, BLUE, RED, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"  # Okabe and Ito
+DERIVED, OTHER, PRINTED, FOURTH = range(4)  # places of lines: the same in all pictures that have them
+BLACK, BLUE, RED, GREEN = COLOURS[:4]
 LOW_SPEEDS = np.arange(50, 451, 10) * KNOT
 WING = ("beam", "chord", "torsion")
 
 
 def _figure(columns: int = 1, height: float = 3.2, zero: bool = True) -> tuple[Figure, list[Axes]]:
     """Return a figure without pyplot, and its axes with a line at zero."""
-    figure = Figure(figsize=(6.4 if columns == 1 else 9.0, height), dpi=100, layout="constrained")
+    figure = Figure(figsize=(6.4 if columns == 1 else 8.0, height), dpi=100, layout="constrained")
     axes = list(figure.subplots(1, columns, squeeze=False)[0])
     for ax in axes:
         ax.grid(color="0.9", linewidth=0.6)
@@ -46,9 +50,23 @@ def _figure(columns: int = 1, height: float = 3.2, zero: bool = True) -> tuple[F
 
 
 def _titled(ax: Axes, title: str, x: str, y: str) -> None:
-    ax.set_title(title, loc="left", fontsize=10)
+    ax.set_title(title, fontsize=10)
     ax.set_xlabel(x)
     ax.set_ylabel(y)
+
+
+def _line(ax: Axes, x: ArrayLike, y: ArrayLike, place: int, label: str) -> None:
+    """Draw a line with colour, dashes and markers of its place."""
+    every = max(1, np.size(x) // 8)
+    marked: dict[str, Any] = {"markevery": (place * every // 3, every), "markersize": 4.5}
+    width = 2.2 if place == DERIVED else 1.6
+    ax.plot(x, y, label=label, linewidth=width, **(line_style(place) | marked))
+
+
+def _tell_case(ax: Axes, *more: str) -> None:
+    """Write in small print which rotor this is, how it was analysed, and how far its inputs can be trusted."""
+    undamped = "sections turn without damping, as in the paper"
+    rests_on(ax, xv15(), f"Case {xv15().name}, {undamped}.", *more)
 
 
 # Kinematics
@@ -59,17 +77,14 @@ def steady_tilt() -> Figure:
     figure, (ax,) = _figure()
     azimuth = np.linspace(0, 2 * np.pi, 73)
     around = [consequences.steady_tilt(angle) for angle in azimuth]
-    styles = ((RED, "--"), (BLUE, ":"), (BLACK, "-"))
-    for label, (color, style) in zip(around[0], styles, strict=True):
-        ax.plot(
-            np.degrees(azimuth), [at[label] for at in around], style, color=color, label=label, linewidth=2
-        )
+    for label, place in zip(around[0], (PRINTED, OTHER, DERIVED), strict=True):
+        _line(ax, np.degrees(azimuth), [at[label] for at in around], place, label)
     _titled(
         ax, "XV-15 blade tip, gimbal tilted by 1° and held", "Azimuth (deg)", "Acceleration along i (m/s²)"
     )
     ax.set_xticks(range(0, 361, 60))
     ax.set_xlim(0, 360)
-    ax.legend(frameon=False, loc="upper center", ncols=3, fontsize=8)
+    ax.legend(frameon=False, loc="upper center", ncols=3)
     ax.set_ylim(-15, 19)
     return figure
 
@@ -81,10 +96,10 @@ def false_growth() -> Figure:
     """Growth rate of a rotor in vacuum without dampers, with the Coriolis sign of Eq. 13 and with the derived one."""
     figure, (ax,) = _figure()
     signs = {
-        "ζ′ of Eq. 13 as printed": (consequences.with_printed_coriolis_sign("published"), RED, "-"),
-        "as derived": ("published", BLACK, "--"),
+        "ζ′ of Eq. 13 as printed": (consequences.with_printed_coriolis_sign("published"), PRINTED),
+        "as derived": ("published", DERIVED),
     }
-    for label, (equations, color, style) in signs.items():
+    for label, (equations, place) in signs.items():
         model = consequences.hub_held().linearize(
             LOW_SPEEDS,
             equations=equations,
@@ -94,7 +109,7 @@ def false_growth() -> Figure:
             locked=("gimbal", "pitch"),
         )
         growth = model.modes().eigenvalue.real.max("mode") / xv15().operation.rotor_speed
-        ax.plot(_structural_pitch(model.trim.pitch), growth, style, color=color, label=label, linewidth=2)
+        _line(ax, _structural_pitch(model.trim.pitch), growth, place, label)
     _titled(
         ax,
         "XV-15 flap and lag in a vacuum, no dampers, hub held",
@@ -102,6 +117,7 @@ def false_growth() -> Figure:
         "Largest growth rate, Re s/Ω",
     )
     ax.legend(frameon=False)
+    _tell_case(ax, "Equations: published. Rigid pitch, constant rotor speed, gimbal held.")
     return figure
 
 
@@ -173,26 +189,22 @@ def frequencies_against_collective() -> Figure:
     for ax, (name, values) in zip(axes, rotors.items(), strict=True):
         inertia = sp.sqrt(s.flap_inertia * s.lag_inertia) * s.rotor_speed**2
         curves = (
-            ("$ν_β$", sp.sqrt(_frequency_squared("flap")), BLUE, "--"),
-            ("$ν_ζ$", sp.sqrt(_frequency_squared("lag")), RED, "-"),
+            ("$ν_β$", sp.sqrt(_frequency_squared("flap"))),
+            ("$ν_ζ$", sp.sqrt(_frequency_squared("lag"))),
             (
                 r"$K_{βζ}/\sqrt{I_β I_ζ}Ω^2$",
                 flap_lag_springs.STIFFNESS["flap", "lag", 0] / inertia,
-                GREEN,
-                ":",
             ),
         )
-        for label, expression, color, style in curves:
+        for place, (label, expression) in enumerate(curves, OTHER):
             curve = _numbers(_springs_in(expression), values, s.structural_pitch)(angle)
-            ax.plot(
-                np.degrees(angle), curve * np.ones_like(angle), style, color=color, label=label, linewidth=2
-            )
+            _line(ax, np.degrees(angle), curve * np.ones_like(angle), place, label)
         shares = f"$R_β$ = {values[s.flap_outboard_fraction]:g}, $R_ζ$ = {values[s.lag_outboard_fraction]:g}"
-        _titled(ax, f"{name}: {shares}", "Pitch of the structural axes ϑ (deg)", "per revolution")
+        _titled(ax, f"{name}: {shares}", "Pitch of the structural axes ϑ (deg)", "Per revolution")
         ax.set_xticks(range(0, 91, 15))
         ax.set_xlim(0, 90)
     axes[1].set_ylabel("")
-    axes[0].legend(frameon=False, fontsize=9)
+    axes[0].legend(frameon=False)
     return figure
 
 
@@ -206,17 +218,17 @@ def _frequency_squared(name: str) -> sp.Expr:
 def lag_frequency() -> Figure:
     """Regressive lag mode on a rigid hub: in a vacuum, with the published airloads and with the consistent ones."""
     figure, (ax,) = _figure()
-    variants: tuple[tuple[str, dict[str, Any], str, str], ...] = (
-        ("in a vacuum", {"airloads": "none"}, BLUE, ":"),
-        ("published equations", {"equations": "published"}, RED, "--"),
-        ("consistent equations", {}, BLACK, "-"),
+    variants: tuple[tuple[str, dict[str, Any], int], ...] = (
+        ("in a vacuum", {"airloads": "none"}, OTHER),
+        ("published equations", {"equations": "published"}, PRINTED),
+        ("consistent equations", {}, DERIVED),
     )
-    for label, options, color, style in variants:
-        frequency = _regressive_lag(pitch="coupling", **options)
-        ax.plot(LOW_SPEEDS / KNOT, frequency, style, color=color, label=label, linewidth=2)
-    _titled(ax, "XV-15, regressive lag mode, hub held", "Airspeed (kt)", "Frequency (per rev, fixed frame)")
+    for label, options, place in variants:
+        _line(ax, LOW_SPEEDS / KNOT, _regressive_lag(pitch="coupling", **options), place, label)
+    _titled(ax, "XV-15, regressive lag mode, hub held", "Airspeed, KTAS", "Frequency (per rev, fixed frame)")
     ax.set_xlim(50, 450)
     ax.legend(frameon=False)
+    rests_on(ax, xv15(), f"Case {xv15().name}, options: pitch coupling.")
     return figure
 
 
@@ -231,31 +243,30 @@ def published_and_consistent() -> Figure:
     """Damping of the wing's chord mode with the terms the print lacks in the airloads, and without them."""
     figure, (ax,) = _figure()
     variants = (
-        ("published", "published", RED, "--"),
+        ("published", "published", PRINTED),
         (
             "consistent without the cone in the airloads",
             consequences.consistent_but("cone_in_airloads"),
-            BLUE,
-            ":",
+            OTHER,
         ),
-        ("consistent", "consistent", BLACK, "-"),
+        ("consistent", "consistent", DERIVED),
     )
-    for label, equations, color, style in variants:
-        _draw_damping(ax, consequences.modes_of(equations=equations), label, color, style)
+    for label, equations, place in variants:
+        _draw_damping(ax, consequences.modes_of(equations=equations), label, place)
     _of_chord(ax)
     return figure
 
 
-def _draw_damping(ax: Axes, modes: xarray.Dataset, label: str, color: str, style: str) -> None:
-    damping = 100 * modes.damping_ratio.sel(branch="chord").values
-    ax.plot(SPEEDS / KNOT, damping, style, color=color, label=label, linewidth=2)
+def _draw_damping(ax: Axes, modes: xarray.Dataset, label: str, place: int) -> None:
+    _line(ax, SPEEDS / KNOT, 100 * modes.damping_ratio.sel(branch="chord").values, place, label)
 
 
 def _of_chord(ax: Axes) -> None:
-    _titled(ax, "XV-15, wing chord mode", "Airspeed (kt)", "Damping (% of critical)")
+    _titled(ax, "XV-15, wing chord mode", "Airspeed, KTAS", "Damping (% of critical)")
     ax.set_xlim(200, 450)
     ax.set_ylim(-4, 6)
-    ax.legend(frameon=False, fontsize=8)
+    ax.legend(frameon=False)
+    _tell_case(ax)
 
 
 # Pitch and couplings
@@ -273,29 +284,30 @@ def couplings_against_collective() -> Figure:
     """K_Pβ and K_Pζ along the XV-15's trim, as Eqs. 36 and 37 have them."""
     figure, (ax,) = _figure()
     angle, flap, lag, without_lag = _couplings()
-    ax.plot(angle, flap, "--", color=BLUE, label="$K_{Pβ}$", linewidth=2)
-    ax.plot(angle, lag, "-", color=RED, label="$K_{Pζ}$", linewidth=2)
-    ax.plot(angle, without_lag, ":", color=RED, label=r"$K_{Pζ}$ with $\bar{ζ}_0 = 0$")
+    _line(ax, angle, lag, DERIVED, "$K_{Pζ}$")
+    _line(ax, angle, flap, OTHER, "$K_{Pβ}$")
+    _line(ax, angle, without_lag, PRINTED, r"$K_{Pζ}$ with $\bar{ζ}_0 = 0$")
     _titled(
         ax, "XV-15 along its trim", "Pitch of the structural axes ϑ (deg)", "Coupling (nose down per angle)"
     )
     ax.set_ylim(-1, 1)
     above = ax.secondary_xaxis("top")
     marks = np.arange(50, 451, 100)
-    above.set_xticks(np.interp(marks, LOW_SPEEDS / KNOT, angle), [f"{mark}" for mark in marks], fontsize=8)
-    above.set_xlabel("Airspeed (kt)", fontsize=8)
-    ax.legend(frameon=False, fontsize=8)
+    above.set_xticks(np.interp(marks, LOW_SPEEDS / KNOT, angle), [f"{mark}" for mark in marks])
+    above.set_xlabel("Airspeed, KTAS")
+    ax.legend(frameon=False)
+    rests_on(ax, xv15(), f"Case {xv15().name}, windmilling.")
     return figure
 
 
 def damping_by_coupling_sign() -> Figure:
     """The chord mode with the couplings of Eqs. 36 and 37, with both turned round by Eq. 35, and with none."""
     figure, (ax,) = _figure()
-    _draw_damping(ax, consequences.modes_of(pitch="coupling"), "Eqs. 36 and 37", BLACK, "-")
+    _draw_damping(ax, consequences.modes_of(pitch="coupling"), "Eqs. 36 and 37", DERIVED)
     turned = consequences.modes_of(consequences.couplings_turned(), pitch="coupling")
-    _draw_damping(ax, turned, "turned round, by the sign of Eq. 35", RED, "--")
+    _draw_damping(ax, turned, "turned round, by the sign of Eq. 35", PRINTED)
     none: dict[str, Any] = {"pitch_flap_coupling": 0.0, "pitch_lag_coupling": 0.0}
-    _draw_damping(ax, consequences.modes_of(pitch="coupling", **none), "no coupling", BLUE, ":")
+    _draw_damping(ax, consequences.modes_of(pitch="coupling", **none), "no coupling", OTHER)
     _of_chord(ax)
     ax.set_xlim(200, 520)
     ax.set_ylim(-4, 8)
@@ -309,24 +321,25 @@ def gimbal_question() -> Figure:
     """Damping of the chord mode and of regressive flap with neither gimbal term of Eq. 3, either alone, and both."""
     figure, axes = _figure(columns=2)
     variants = (
-        ("neither, as published", "published", GREEN, "-."),
-        ("Coriolis term alone", consequences.published_and("gimbal_coriolis"), RED, "--"),
-        ("roll of the yoke alone", consequences.published_and("yoke_roll"), BLUE, ":"),
-        ("both, the rigid yoke", consequences.published_and("gimbal_coriolis", "yoke_roll"), BLACK, "-"),
+        ("neither, as published", "published", PRINTED),
+        ("Coriolis term alone", consequences.published_and("gimbal_coriolis"), FOURTH),
+        ("roll of the yoke alone", consequences.published_and("yoke_roll"), OTHER),
+        ("both, the rigid yoke", consequences.published_and("gimbal_coriolis", "yoke_roll"), DERIVED),
     )
-    for label, equations, color, style in variants:
+    for label, equations, place in variants:
         modes = consequences.modes_of(equations=equations)
         for ax, branch in zip(axes, ("chord", "regressive flap"), strict=True):
             damping = 100 * modes.damping_ratio.sel(branch=branch).values
-            ax.plot(SPEEDS / KNOT, damping, style, color=color, label=label, linewidth=2)
+            _line(ax, SPEEDS / KNOT, damping, place, label)
     for ax, mode in zip(axes, ("Wing chord", "Regressive flap against the gimbal"), strict=True):
-        _titled(ax, mode, "Airspeed (kt)", "Damping (% of critical)")
+        _titled(ax, mode, "Airspeed, KTAS", "Damping (% of critical)")
     axes[0].set_xlim(360, 410)
     axes[0].set_ylim(-2, 2)
     axes[1].set_xlim(100, 450)
     axes[1].set_ylim(-0.2, 0.5)
     axes[1].set_ylabel("")
-    axes[1].legend(frameon=False, fontsize=8)
+    axes[0].legend(frameon=False)
+    _tell_case(axes[0])
     return figure
 
 
@@ -335,7 +348,7 @@ def flap_hub_inertia_of_tables() -> Figure:
     figure, axes = _figure(columns=2, zero=False)
     for ax, table in zip(axes, TABLES, strict=True):
         _draw_bound(ax, table)
-    axes[0].legend(frameon=False, fontsize=8, loc="lower right")
+    axes[0].legend(frameon=False, loc="lower right")
     axes[1].set_ylabel("")
     return figure
 
@@ -344,8 +357,8 @@ def _draw_bound(ax: Axes, table: PrintedTable) -> None:
     v = table.values
     offset = np.linspace(0, 0.22, 50) * v["R"]
     ax.axhspan(1, 1.25, color="0.9")
-    ax.text(0.005, 1.2, "no mass distribution", fontsize=8, color="0.3")
-    for angle, color, style in (("β", BLUE, "--"), ("ζ", RED, "-")):
+    ax.text(0.005, 1.2, "no mass distribution", fontsize=LABEL_SIZE, color="0.3")
+    for angle, color, style, marker in (("β", BLUE, "--", "^"), ("ζ", RED, "-", "D")):
         bound = np.sqrt(v["I_b"] * v[f"I_{angle}"])
         line = (v[f"I_{angle}"] + offset * v[f"S_{angle}"]) / bound
         ax.plot(
@@ -358,7 +371,7 @@ def _draw_bound(ax: Axes, table: PrintedTable) -> None:
         implied = tables.implied_offset(v, angle) / v["R"]
         error = tables.rounding(v[f"I_{angle}α"]) / bound
         label = f"$I_{{{angle}α}}$ as printed"
-        ax.errorbar(implied, v[f"I_{angle}α"] / bound, error, fmt="o", color=color, label=label, capsize=3)
+        ax.errorbar(implied, v[f"I_{angle}α"] / bound, error, fmt=marker, color=color, label=label, capsize=3)
     _titled(ax, f"Table {table.number}: {table.title}", "Hinge offset e/R", "Inertia/its bound")
     ax.set_ylim(0.75, 1.25)
     ax.set_xlim(0, 0.22)
@@ -387,7 +400,8 @@ def damping_against_flap_hub_inertia() -> Figure:
     x = "$I_{βα}$ (slug ft²)"
     _titled(axes[0], "Mass matrix scaled to unit diagonal", x, "Least eigenvalue")
     _titled(axes[1], "Least damped mode at 250 kt", x, "Damping (% of critical)")
-    axes[0].legend(framealpha=1, edgecolor="none", fontsize=8, loc="lower left")
+    axes[0].legend(framealpha=1, edgecolor="none", loc="lower left")
+    _tell_case(axes[0])
     return figure
 
 
@@ -406,9 +420,10 @@ def boundaries_without_terms() -> Figure:
         change = changes[name]
         ax.barh(name.replace("_", " "), change, color=BLUE, height=0.6)
         side, align = (0.15, "left") if change >= 0 else (-0.15, "right")
-        ax.text(change + side, place, f"{change:+.1f}", va="center", fontsize=8, ha=align)
+        ax.text(change + side, place, f"{change:+.1f}", va="center", fontsize=LABEL_SIZE, ha=align)
     ax.axvline(0, color="0.4", linewidth=0.8)
     ax.margins(x=0.2)
     title = f"XV-15, consistent equations without one term; {base:.1f} kt with all"
     _titled(ax, title, "Change of the chord boundary (kt)", "")
+    _tell_case(ax)
     return figure

@@ -13,7 +13,7 @@ import asyncio
 import base64
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = ROOT / "notebooks"
 PAGES = ROOT / "docs" / "notebooks"
 TIMEOUT = 300  # s for a cell
+FORGET = "# %%\n%reset -f"  # a cell after which the kernel has no names
 
 
 def sources() -> list[Path]:
@@ -38,8 +39,11 @@ def page_of(source: Path) -> Path:
     return PAGES / f"{source.stem}.md"
 
 
-def executed(source: Path) -> NotebookNode:
-    """Run a notebook in a kernel of this interpreter, whatever kernels are installed, and return it with outputs.
+def executed(chosen: Sequence[Path]) -> list[NotebookNode]:
+    """Run notebooks in a kernel of this interpreter, whatever kernels are installed, and return them with outputs.
+
+    They run one after another in one kernel, so that what several of them derive is derived once. A notebook begins
+    without the names of those before it.
 
     Raises
     ------
@@ -59,13 +63,16 @@ def executed(source: Path) -> NotebookNode:
                 transport="ipc", kernel_spec_manager=KernelSpecManager(kernel_dirs=[]), **options
             )
 
-    notebook: NotebookNode = jupytext.read(source)
+    notebooks: list[NotebookNode] = [jupytext.read(source) for source in chosen]
+    together: NotebookNode = jupytext.reads("", "py:percent")
+    for notebook in notebooks:
+        together.cells += [*jupytext.reads(FORGET, "py:percent").cells, *notebook.cells]
     in_root = {"metadata": {"path": str(ROOT)}}
     client = NotebookClient(
-        notebook, kernel_manager_class=OwnKernel, kernel_name="python3", timeout=TIMEOUT, resources=in_root
+        together, kernel_manager_class=OwnKernel, kernel_name="python3", timeout=TIMEOUT, resources=in_root
     )
     asyncio.run(client.async_execute())  # closes the loop and its sockets at the end
-    return notebook
+    return notebooks
 
 
 def rendered(source: Path, notebook: NotebookNode) -> tuple[str, dict[str, bytes]]:
@@ -105,9 +112,9 @@ def _linked_from_page(text: str) -> str:
     return re.sub(r"\]\(\.\./(derive|generated|tests)/", r"](../../\1/", text)
 
 
-def write(source: Path) -> None:
-    """Run a notebook, write its page and pictures, and remove pictures that it no longer has."""
-    text, pictures = rendered(source, executed(source))
+def write(source: Path, notebook: NotebookNode) -> None:
+    """Write the page and pictures of a notebook that ran, and remove pictures that it no longer has."""
+    text, pictures = rendered(source, notebook)
     PAGES.mkdir(parents=True, exist_ok=True)
     for old in PAGES.glob(f"{source.stem}-[0-9]*.png"):
         old.unlink()
@@ -124,10 +131,10 @@ def main() -> int:
         known = ", ".join(source.stem for source in sources())
         print(f"no such notebook: {', '.join(sorted(unknown))}; known: {known}")
         return 2
-    for source in sources():
-        if not wanted or source.stem in wanted:
-            write(source)
-            print(f"written: {page_of(source).relative_to(ROOT)}")
+    chosen = [source for source in sources() if not wanted or source.stem in wanted]
+    for source, notebook in zip(chosen, executed(chosen), strict=True):
+        write(source, notebook)
+        print(f"written: {page_of(source).relative_to(ROOT)}")
     return 0
 
 

@@ -136,12 +136,18 @@ def nowhere_negative(matrix: np.ndarray[Any, Any]) -> bool:
 
 def unknown_name(name: str, known: Collection[str], what: str = "field") -> str:
     """Return the rule that an unknown name breaks, with the nearest known name or, without a near name, all names."""
+    nearest = nearest_name(name, known)
+    hint = f"did you mean {nearest}?" if nearest else f"known: {', '.join(known)}"
+    return f"unknown {what} {_on_one_line(name)!r}; {hint}"
+
+
+def nearest_name(name: str, known: Iterable[str]) -> str | None:
+    """Return the known name that a name may be meant for, in upper or lower case; None if no known name is near."""
     by_lower_case = {k.lower(): k for k in known}
     # As "thrust_coefficient" for "thrust".
     longer = [k for k in by_lower_case if name and k.startswith(f"{name.lower()}_")]
     nearest = difflib.get_close_matches(name.lower(), by_lower_case, n=1) or longer
-    hint = f"did you mean {by_lower_case[nearest[0]]}?" if nearest else f"known: {', '.join(known)}"
-    return f"unknown {what} {_on_one_line(name)!r}; {hint}"
+    return by_lower_case[nearest[0]] if nearest else None
 
 
 def check_known(field: str, name: object, known: Collection[str], what: str) -> None:

@@ -275,8 +275,14 @@ def test_describe_tells_a_field_a_section_and_all():
     assert all(f.path in everything for f in deck_fields())
     records = json.loads(run("describe", "operation", "--json").stdout)
     assert {r["path"] for r in records} >= {"operation.density", "operation.trim"}
-    result = run("describe", "rotor.precon")
-    assert result.exit_code == 2 and "did you mean rotor.precone?" in result.stderr
+    for near, meant in (
+        ("rotor.precon", "rotor.precone"),
+        ("precon", "rotor.precone"),
+        ("beem-wing", "beam-wing"),
+        ("xv51", "xv15"),
+    ):
+        result = run("describe", near)
+        assert result.exit_code == 2 and f"did you mean {meant}?" in result.stderr
 
 
 # JSON schema --------------------------------------------------------------------------------------------------------

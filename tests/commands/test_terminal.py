@@ -181,8 +181,9 @@ def test_the_title_tells_no_rotor_speed_where_it_varies(words):
     assert told.startswith("XV-15 with three uncoupled wing modes\n") and "458 rpm" not in told
 
 
-def test_the_list_of_commands_fits_the_terminal():
-    lines = CliRunner().invoke(main, ["--help"], env={"COLUMNS": "80"}).stdout.splitlines()
+@pytest.mark.parametrize("command", ["", *main.commands])
+def test_help_fits_the_terminal(command):
+    lines = CliRunner().invoke(main, [*command.split(), "--help"], env={"COLUMNS": "80"}).stdout.splitlines()
     assert lines and [line for line in lines if len(line) > 80] == []
 
 

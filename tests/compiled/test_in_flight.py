@@ -30,8 +30,8 @@ def served(monkeypatch):
     """Which points one call served, of each batch."""
     found, genuine = [], rotor_model.find_in_flight
 
-    def recorded(balance):
-        result = genuine(balance)
+    def recorded(*rotors):
+        result = genuine(*rotors)
         found.append(result.served)
         return result
 

@@ -25,19 +25,18 @@ def test_a_rotor_on_a_support_is_a_product_of_matrices(modes, shared):
     expected = [back @ matrix @ turn for matrix in matrices[:3]] + [back @ matrices[3]]
     for matrix, addition in zip(expected, additions, strict=False):
         matrix[:, :modes, :modes] += addition
-    found = motion.on_support(matrices, hub, additions)
+    found, certain = motion.on_support(matrices, motion.Support(hub, additions))
+    assert (certain == motion.have_mass(found[0])).all()
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-13 * np.abs(other).max())
-    without = motion.on_support(matrices[:3], hub, additions)
+    without, _ = motion.on_support(matrices[:3], motion.Support(hub, additions))
     assert len(without) == 3 and all((one == other).all() for one, other in zip(without, found, strict=False))
     for matrix in matrices:
         matrix[5, 2, 3] = np.nan
-    again = motion.on_support(matrices, hub, additions)
-    alone = motion.on_support(
-        [matrix[9:10] for matrix in matrices],
-        hub if shared else hub[9:10],
-        [part if shared else part[9:10] for part in additions],
-    )
+    again, certain = motion.on_support(matrices, motion.Support(hub, additions))
+    assert not certain[5]
+    own = motion.Support(hub if shared else hub[9:10], [part if shared else part[9:10] for part in additions])
+    alone, _ = motion.on_support([matrix[9:10] for matrix in matrices], own)
     for one, other, single in zip(again, found, alone, strict=True):
         assert np.isnan(one[5]).any() and (np.delete(one, 5, 0) == np.delete(other, 5, 0)).all()
         assert (single == other[9]).all()
@@ -98,3 +97,16 @@ def test_a_problem_with_too_many_states_is_left_to_others():
     n = eigenvalues.MOST_STATES // 2 + 1
     one = np.eye(n)[None]
     assert eigenvalues.roots_of_motion(one, one, one, range(n))[1].all()
+
+
+@pytest.mark.parametrize("n", [3, 100])
+def test_state_matrices_solve_the_equations_of_motion(n):
+    rng = np.random.default_rng(n)
+    mass, damping, stiffness = (rng.standard_normal((POINTS, n, n)) for _ in range(3))
+    mass += 3 * n * np.eye(n)
+    held = list(range(0, n, 2))
+    found, unsafe = motion.state_matrices(mass, damping, stiffness, held)
+    rows = found[:, len(held) :]
+    left = mass @ rows + np.concatenate([stiffness[..., held], damping], axis=-1)
+    assert not unsafe.any() and np.abs(left).max() < 1e-11
+    assert (found[:, : len(held)] == np.eye(n + len(held))[len(held) + np.array(held)]).all()

@@ -383,7 +383,9 @@ def test_a_file_that_is_no_deck(tmp_path, content, rule):
     ("name", "rule"),
     [
         ("xv51", r"unknown deck 'xv51'; did you mean xv15\?"),
-        ("nowhere/deck.toml", "no such file"),
+        ("XV15.toml", r"no such file; did you mean the bundled deck xv15\?"),
+        ("nowhere/xv15-wng.toml", r"no such file; did you mean the bundled deck xv15-wing\?"),
+        ("nowhere/deck.toml", "no such file$"),
         (os.sep, "must be a file, not a folder"),
         ("/dev/zero", "no such file"),
         ("a" * 9999, "cannot be read"),

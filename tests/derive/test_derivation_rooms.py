@@ -31,11 +31,15 @@ def test_a_file_imports_its_own_room_and_those_before(path):
             assert ROOMS.index(room_of(name)) <= ROOMS.index(room_of(module)), name
 
 
-def test_the_consequences_alone_import_the_runtime_and_by_its_public_names():
+def test_the_consequences_alone_import_the_runtime_by_its_public_names_and_pages_its_style():
     users = {
         path: [name for name in imported(path) if name.partition(".")[0] == "proprotor"] for path in FILES
     }
-    assert {path: names for path, names in users.items() if names} == {
+    style = ("proprotor.plots.rests_on", "proprotor.plots.style.")
+    for path, names in users.items():
+        if path.parent == DERIVE / "pages":
+            assert all(name.startswith(style) for name in names), path
+    assert {path: names for path, names in users.items() if names and path.parent != DERIVE / "pages"} == {
         DERIVE / "audit" / "consequences.py": ["proprotor"]
     }
 

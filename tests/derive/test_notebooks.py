@@ -40,9 +40,16 @@ def test_there_are_six_notebooks_in_the_order_of_the_derivation():
     assert pages == {source.stem for source in SOURCES}
 
 
+@pytest.fixture(scope="module")
+def run_together():
+    """Every notebook with its outputs, by name: what several derive is derived once."""
+    ran = notebooks.executed(SOURCES)
+    return {source.stem: notebook for source, notebook in zip(SOURCES, ran, strict=True)}
+
+
 @pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)
-def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source):
-    executed = notebooks.executed(source)
+def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source, run_together):
+    executed = run_together[source.stem]
     outputs = [output for cell in executed.cells for output in cell.get("outputs", ())]
     assert not [output for output in outputs if output.output_type in ("error", "stream")]
     assert all(
@@ -56,7 +63,9 @@ def test_a_notebook_runs_without_a_warning_and_shows_what_its_page_shows(source)
     assert shown == pytest.approx(wanted, **TOLERANCE), told
     assert {path.name for path in notebooks.PAGES.glob(f"{source.stem}-*.png")} == set(pictures), told
     for name, data in pictures.items():
-        assert _is_drawn(data) and _is_drawn((notebooks.PAGES / name).read_bytes()), name
+        assert _size_of_drawn(data) == _size_of_drawn((notebooks.PAGES / name).read_bytes()), (
+            f"{name}: {told}"
+        )
 
 
 SMALL = """# %% [markdown]
@@ -103,6 +112,16 @@ def test_pages_are_written_with_their_pictures_alone(tmp_path, monkeypatch, caps
     assert "![a square](7-small-1.png)\n\n*as it is*\n" in text
 
 
+def test_a_notebook_has_no_names_of_those_before_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(notebooks, "ROOT", tmp_path)
+    monkeypatch.chdir(tmp_path)  # where the sockets of the kernel are
+    (tmp_path / "1-names.py").write_text("# %%\nsomething = 1\nsomething")
+    (tmp_path / "2-asks.py").write_text("# %%\nglobals().get('something', 'unknown')")
+    first, second = notebooks.executed([tmp_path / "1-names.py", tmp_path / "2-asks.py"])
+    assert first.cells[-1].outputs[0].data["text/plain"] == "1"
+    assert second.cells[-1].outputs[0].data["text/plain"] == "'unknown'"
+
+
 def test_a_notebook_that_there_is_not_is_told(monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["derive.pages.notebooks", "9-none"])
     assert notebooks.main() == 2
@@ -110,11 +129,12 @@ def test_a_notebook_that_there_is_not_is_told(monkeypatch, capsys):
     assert told.startswith("no such notebook: 9-none; known: 1-kinematics, ") and told.count("\n") == 1
 
 
-def _is_drawn(data: bytes) -> bool:
-    """More than a frame on white."""
+def _size_of_drawn(data: bytes) -> tuple[int, int]:
+    """Return the size of a picture, on which more than a frame on white is drawn."""
     with Image.open(io.BytesIO(data)) as image:
         grey = image.convert("L")
-        return min(grey.size) > 200 and sum(grey.histogram()[:128]) > 1000
+        assert min(grey.size) > 200 and sum(grey.histogram()[:128]) > 1000
+        return grey.size
 
 
 def test_every_equation_and_table_has_its_cell_below_its_heading():

@@ -11,7 +11,7 @@ import numpy as np
 import proprotor as pp
 from benchmarks.paper_figures.published import PAPER_FREQUENCIES
 from proprotor.rotor.options import CHOICES, LOCKABLE
-from tests.golden.modes import Modes, Record, modes_at
+from tests.golden.modes import Modes, Record, modes_at_each
 
 ADVANCE = (0.25, 0.5, 0.7)  # airspeed by tip speed: the same for models of any size
 SWITCHES = ("equations", "pitch", "structure", "airloads", "compressibility", "rotor_speed")
@@ -55,7 +55,6 @@ def computed(deck: str) -> Modes:
     for choice, options in choices(rotor_speed):
         model = case.linearize(airspeeds, **options)
         assert model.trim.converged.all(), (deck, choice, model.trim.reason)
-        modes = model.modes()
-        for place, advance in enumerate(ADVANCE):
-            found[*choice, str(advance)] = modes_at(modes, place, rotor_speed)
+        for advance, modes in zip(ADVANCE, modes_at_each(model.modes(), rotor_speed), strict=True):
+            found[*choice, str(advance)] = modes
     return found

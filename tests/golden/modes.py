@@ -113,12 +113,12 @@ class Record:
             yield f"  {name:<16}" + ", ".join(f"{choice} {count}" for choice, count in counts.items())
 
 
-def modes_at(modes: xarray.Dataset, place: int, rotor_speed: float) -> list[Mode]:
-    """The modes of one point of a batch along the airspeed."""
-    at = modes.isel(airspeed=place)
-    per_rev = at.natural_frequency.values / rotor_speed
-    rows = zip(at.dominant.values, per_rev, at.damping_ratio.values, strict=True)
-    return [_mode(*row) for row in rows if np.isfinite(row[1])]
+def modes_at_each(modes: xarray.Dataset, rotor_speed: float) -> Iterator[list[Mode]]:
+    """The modes of each point of a batch along the airspeed."""
+    along = modes.transpose("airspeed", ...)
+    per_rev = along.natural_frequency.values / rotor_speed
+    for point in zip(along.dominant.values, per_rev, along.damping_ratio.values, strict=True):
+        yield [_mode(*row) for row in zip(*point, strict=True) if np.isfinite(row[1])]
 
 
 def accepted(was: Modes, now: Modes) -> Modes:

@@ -54,7 +54,7 @@ def test_the_plain_text_is_short(what):
 
 
 def test_text_of_a_deck_is_escaped():
-    named = replace(CASE, title='<script>alert("x")</script> & more', warnings=("<b>bold</b>",))
+    named = replace(CASE, title='<script>alert("x")</script> & more', remarks=("<b>bold</b>",))
     html = named._repr_html_()
     assert "<script>" not in html and "<b>bold" not in html
     assert '<script>alert("x")</script> & more' in text_of(named)

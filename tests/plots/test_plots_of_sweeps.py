@@ -282,3 +282,18 @@ def test_symmetric_and_antisymmetric_modes_of_one_motion_have_one_colour(of_airc
     support = of_aircraft.isel(mode=slice(18))
     styles = [(style.color, style.linestyle) for style in mode_styles(support)]
     assert len(set(styles)) == len(styles)
+
+
+def test_an_axis_is_no_higher_than_its_lines_need(sweep, case):
+    """Half the usual axis where all lines stay below it, unless limits were given or a further sweep is higher."""
+    wing = sweep.sel(mode=["beam", "chord"])
+    low, high = wing.copy(deep=True), wing.copy(deep=True)
+    low["damping_ratio"][:] = np.minimum(wing.damping_ratio, 0.085)
+    high["damping_ratio"][:] = 0.12
+    ax = plots.plot_damping(low)
+    assert ax.get_ylim() == (-5, 10)
+    assert plots.plot_damping(high, ax).get_ylim() == (-5, 20)
+    assert plots.plot_damping(low, limits=(-1, 30)).get_ylim() == (-1, 30)
+    omega = case.operation.rotor_speed
+    assert plots.plot_frequency(wing, rotor_speed=omega).get_ylim() == (0, 2.5)
+    assert plots.plot_frequency(sweep, rotor_speed=omega).get_ylim() == (0, 5)

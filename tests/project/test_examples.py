@@ -18,9 +18,12 @@ TOLD = "`python -m benchmarks.examples` writes it anew"
 def test_an_example_runs_and_draws_its_picture(script, tmp_path):
     printed = examples.run(script, tmp_path)
     assert re.search(r"\d", printed)
+    sizes = []
     for folder in (tmp_path, examples.EXAMPLES):
         with Image.open(folder / f"{script.stem}.png") as picture:
             assert min(picture.size) > 300 and sum(picture.convert("L").histogram()[:128]) > 1000
+            sizes.append(picture.size)
+    assert sizes[0] == sizes[1], f"the picture is one of an earlier version: {TOLD}"
 
 
 def test_the_slope_of_the_example_is_that_of_two_searches(tmp_path):

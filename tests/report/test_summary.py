@@ -149,4 +149,8 @@ def test_the_summary_is_one_page(name):
     _, document = reported(pp.load_case(name), "300:400:50kt")
     pages = [page.extract_text() for page in PdfReader(io.BytesIO(pdf_of(document))).pages]
     assert "Analysed: 3 airspeeds" in pages[0]
+    contents = pages[0].partition("Contents\n")[2].splitlines()
+    assert [line.rstrip(" .0123456789") for line in contents[: len(document.sections)]] == [
+        section.title for section in document.sections
+    ]
     assert pages[1].startswith(document.sections[0].title)

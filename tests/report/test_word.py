@@ -47,6 +47,28 @@ def test_the_headings_are_styles_that_a_text_processor_lists(file, document):
     assert first.paragraph_format.page_break_before
 
 
+def test_the_contents_lead_to_every_section(file, document):
+    """Each line is a link to the bookmark of a heading, and a field that has its page."""
+    places = {
+        place.get(f"{W}name"): "".join(text.text for text in heading.iter(f"{W}t"))
+        for heading in file.element.body.iter(f"{W}p")
+        for place in heading.iter(f"{W}bookmarkStart")
+    }
+    links = list(file.element.body.iter(f"{W}hyperlink"))
+    titles = [section.title for section in document.sections]
+    assert ["".join(text.text for text in link.iter(f"{W}t")).strip() for link in links] == titles
+    assert [places[link.get(f"{W}anchor")] for link in links] == titles
+    fields = [field.get(f"{W}instr") for field in file.element.body.iter(f"{W}fldSimple")]
+    assert fields == [f"PAGEREF {link.get(f'{W}anchor')}" for link in links]
+
+
+def test_a_short_table_stays_on_one_page(file):
+    for table in file.tables:
+        *kept, last = ([cell.paragraphs[0].paragraph_format for cell in row.cells] for row in table.rows)
+        together = {form.keep_with_next for row in kept for form in row}
+        assert together == {len(table.rows) <= 16} and not any(form.keep_with_next for form in last)
+
+
 def test_the_verdict_and_what_it_rests_on_come_first(file, document):
     texts = [p.text for p in file.paragraphs]
     end = texts.index(document.sections[0].title)

@@ -184,9 +184,9 @@ def march(case, free, start, steps):
         value, speed = (np.zeros((n, 18), dtype=complex) for _ in range(2))
         value[:, free], speed[:, free] = state[:, : len(free)], state[:, len(free) :]
         still = case.rows(Motion(value, speed, 0 * value), time, order=6)[:, free]
-        unit = np.eye(18)[free][:, None, :]
-        mass = inertia_rows(case.rotor, Motion(value, 0 * value, unit + 0 * value), time)
-        mass = mass - inertia_rows(case.rotor, Motion(value), time)
+        each = np.concatenate([np.eye(18)[free], np.zeros((1, 18))])[:, None, :]
+        loads = inertia_rows(case.rotor, Motion(value, 0 * value, each + 0 * value), time)
+        mass = loads[:-1] - loads[-1]
         acceleration = np.linalg.solve(np.moveaxis(mass[..., free], 0, -1), -still[..., None])[..., 0]
         return np.concatenate([state[:, len(free) :], acceleration], axis=1)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
-from proprotor.stability import crossings
+from proprotor.stability import screening
 from proprotor.stability.brackets import Brackets
 from proprotor.stability.crossings import Search
 from proprotor.stability.steps import first_steps
@@ -98,7 +98,7 @@ def test_the_lowest_onset_does_not_depend_on_which_equal_assignment_is_taken(mon
     own = lowest_onset(SYSTEMS[system], points)
     assert own == pytest.approx(expected, abs=CLOSE)
     for seed in ADVERSARIES:
-        monkeypatch.setattr(crossings, "steps_by_values", adversary(seed))
+        monkeypatch.setattr(screening, "_steps_by_values", adversary(seed))
         assert lowest_onset(SYSTEMS[system], points) == pytest.approx(own, rel=1e-9)
 
 

@@ -253,6 +253,19 @@ def test_the_picture_has_both_margins_of_every_loop_and_what_is_needed(found):
     plt.close(figure)
 
 
+def test_an_airspeed_that_failed_is_hatched_and_not_told_to_be_unstable(found):
+    failed = found.copy(deep=True)
+    failed["stable"][:], failed["reason"][0] = False, "no trim was found"
+    first, last = failed.airspeed.values
+    middle = (first + last) / 2
+    for ax in plot_margins(failed, unit="m/s").axes:
+        stretches = {bool(patch.get_hatch()): patch for patch in ax.patches}
+        assert stretches[True].get_x() + stretches[True].get_width() == pytest.approx(middle)
+        assert stretches[False].get_x() == pytest.approx(middle)
+        assert stretches[False].get_x() + stretches[False].get_width() == pytest.approx(last)
+    plt.close("all")
+
+
 def test_refusals():
     with pytest.raises(pp.InputError, match="has no control loop"):
         CASE.margins([120.0])

@@ -67,6 +67,7 @@ def test_a_notebook_shows_a_bar_below_its_cell(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # where the sockets of the kernel are
     source = tmp_path / "study.py"
     source.write_text(f"# %%{SCRIPT}")
-    (output,) = notebooks.executed(source).cells[0].outputs
+    (notebook,) = notebooks.executed([source])
+    (output,) = notebook.cells[0].outputs
     shown = output["data"]["text/html"]
     assert shown.startswith('<progress value="4" max="4"></progress> 4 of 4 points, 1 failed, ')

@@ -158,7 +158,7 @@ WRONG = [
     ('["8000 ft*lbf/rad", "16000 ft*lbf/rad"]', '{ scipy = "norm", args = [1, 2, 3] }', "arguments of scipy"),
     ("rotor.control_stiffness", "rotor.control_stif", "rotor.control_stiffness"),
     ("pitch = ", "pich = ", "did you mean pitch?"),
-    ('"xv15-uncoupled"', '"xv15-uncupled.toml"', "no such file"),
+    ('"xv15-uncoupled"', '"xv15-uncupled.toml"', "did you mean the bundled deck xv15-uncoupled?"),
     ("[study]", "[study", "is not TOML"),
 ]
 

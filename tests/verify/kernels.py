@@ -14,6 +14,8 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -40,6 +42,19 @@ NUMERICAL = (
     "trim",
     "trim_targets",
 )
+# Of a file that asks about entries of matrices too, the tests that take eigenvalues.
+ALONE = {
+    "invariants": (
+        "test_mass_is_nowhere_negative",
+        "test_mass_is_positive_once_the_hub_carries_inertia",
+        "test_collective_and_cyclic_motions_are_those_of_one_blade",
+        "test_nothing_grows_when_all_rotating_frequencies_are_above_one_per_rev",
+        "test_blades_lagging_below_one_per_rev_shake_a_soft_hub_apart",
+        "test_a_gimbal_below_one_per_rev_is_unstable_although_every_blade_is_above",
+        "test_a_support_turned_about_the_shaft_keeps_its_eigenvalues",
+        "test_flap_lag_and_gimbal_frequencies_of_a_flat_rotor",
+    ),
+}
 _CORE = re.compile(r"^Core: (\w+)$", re.MULTILINE)
 _TRIED = "import numpy; numpy.linalg.eigvals(numpy.random.default_rng(0).normal(size=(40, 40)))"
 
@@ -62,33 +77,55 @@ def core_in_force(kernel: str | None = None) -> str:
     return found[1] if found and not tried.returncode else ""
 
 
+def selected() -> Iterator[str]:
+    """Files and tests that are run, as pytest names them."""
+    for name in NUMERICAL:
+        for path in (ROOT / "tests").glob(f"*/test_{name}.py"):
+            file = path.relative_to(ROOT).as_posix()
+            yield from (f"{file}::{test}" for test in ALONE[name]) if name in ALONE else (file,)
+
+
+def tested(kernel: str, arguments: list[str]) -> bool:
+    """Run the tests under a kernel, print what they print when they are done, and return whether all passed."""
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *selected(), *arguments]
+    done = subprocess.run(
+        command,
+        env=environment(kernel),
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    print(f"{kernel}:\n{done.stdout}", flush=True)
+    return not done.returncode
+
+
 def main(arguments: list[str] | None = None) -> int:
-    """Run the tests under every kernel but the process's own; further arguments are those of pytest."""
+    """Run the tests under every kernel but the process's own; further arguments are those of pytest.
+
+    Each kernel has a process of its own, and there are as many at a time as processors: kernels take about the same
+    time, so that all processors are busy until the end.
+    """
     given = sys.argv[1:] if arguments is None else arguments
-    files = [
-        path.relative_to(ROOT).as_posix()
-        for name in NUMERICAL
-        for path in (ROOT / "tests").glob(f"*/test_{name}.py")
-    ]
-    failed, run = [], []
+    asked = []
     own = core_in_force()
     for kernel in KERNELS:
         if kernel == own:
             print(f"{kernel}: passed over, as `make test` runs under it", flush=True)
-            continue
-        if (core := core_in_force(kernel)) != kernel:
+        elif (core := core_in_force(kernel)) != kernel:
             print(
                 f"{kernel}: passed over, as this processor or OpenBLAS has {core or 'none'} in its place",
                 flush=True,
             )
-            continue
-        print(f"{kernel}:", flush=True)
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *files, *given]
-        run.append(kernel)
-        if subprocess.run(command, env=environment(kernel), cwd=ROOT, check=False).returncode:
-            failed.append(kernel)
+        else:
+            asked.append(kernel)
+    with ThreadPoolExecutor(os.cpu_count()) as processors:
+        passed = processors.map(lambda kernel: tested(kernel, given), asked)
+        failed = [kernel for kernel, all_passed in zip(asked, passed, strict=True) if not all_passed]
     print(
-        f"numerical tests run under {', '.join(run) or 'no kernel'}; failed under {', '.join(failed) or 'none'}"
+        f"numerical tests run under {', '.join(asked) or 'no kernel'}; "
+        f"failed under {', '.join(failed) or 'none'}"
     )
     return 1 if failed else 0
 

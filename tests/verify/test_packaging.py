@@ -60,10 +60,11 @@ def built(tmp_path_factory):
 
 
 def new_environment(folder, *wanted):
-    """The interpreter of a new environment that has what is wanted, and what that asks for."""
-    venv.create(folder, with_pip=True)
+    """The interpreter of a new environment that has what is wanted, and what that asks for, by the pip of this one."""
+    venv.create(folder)
     interpreter = folder / ("Scripts" if os.name == "nt" else "bin") / "python"
-    subprocess.run([interpreter, "-m", "pip", "install", "--quiet", *wanted], check=True, capture_output=True)
+    command = [sys.executable, "-m", "pip", "--python", interpreter, "install", "--quiet", *wanted]
+    subprocess.run(command, check=True, capture_output=True)
     return interpreter
 
 

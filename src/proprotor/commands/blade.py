@@ -76,8 +76,9 @@ def blade(
 
     \b
     Examples:
-      proprotor blade blade.csv --at-rotor-speed "458 rpm" --collective "15:50:5 deg" \\
-        --control-stiffness "22400 ft*lbf/rad" --pitch-bearing "1.4 ft" --deck rotor.toml --plot fan.png
+      proprotor blade blade.csv --at-rotor-speed "458 rpm" \\
+        --collective "15:50:5 deg" --control-stiffness "22400 ft*lbf/rad" \\
+        --pitch-bearing "1.4 ft" --deck rotor.toml --plot fan.png
     """
     from proprotor.deck.blade_file import read_blade  # here, so that --help answers without them
     from proprotor.model.blade_comparison import compare_blades

@@ -54,7 +54,8 @@ def calibrate(
     \b
     Examples:
       proprotor calibrate xv15 --to points.csv --input rotor.control_stiffness
-      proprotor calibrate my.toml --to points.csv --input "rotor.precone=1:3 deg" --out calibrated.toml
+      proprotor calibrate my.toml --to points.csv \\
+        --input "rotor.precone=1:3 deg" --out calibrated.toml
     """
     inputs = _inputs(varied)
     if out is not None and not out.endswith(".toml"):

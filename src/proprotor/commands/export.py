@@ -57,7 +57,8 @@ def export(
 
     \b
     Examples:
-      proprotor export xv15 rotor.bdf --speed "370 kt" --grid 4001 --first-extra-point 9001
+      proprotor export xv15 rotor.bdf --speed "370 kt" --grid 4001 \\
+        --first-extra-point 9001
       proprotor export xv15 xv15.mat --speed "370 kt"
     """
     write = _writer(file, grid, first_extra_point, length_unit, mass_unit)

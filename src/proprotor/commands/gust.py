@@ -81,8 +81,10 @@ def gust(
     \b
     Examples:
       proprotor gust xv15 --speed "200 kt" --output force_x --output moment_y
-      proprotor gust xv15 --speed "200 kt" --spectrum dryden --intensity "3 ft/s" --plot spectra.png
-      proprotor gust xv15 --speed "200 kt" --gradient "30:350:80 ft" --velocity "30 ft/s"
+      proprotor gust xv15 --speed "200 kt" --spectrum dryden \\
+        --intensity "3 ft/s" --plot spectra.png
+      proprotor gust xv15 --speed "200 kt" --gradient "30:350:80 ft" \\
+        --velocity "30 ft/s"
     """
     turbulence = _turbulence(spectrum, component, intensity, scale, gradient, velocity)
     case = request.load()

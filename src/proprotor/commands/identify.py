@@ -59,8 +59,10 @@ def identify(
     \b
     Examples:
       proprotor identify decay.csv
-      proprotor identify decay.csv --between "0.5:4 s" --channel beam --method moving-block --frequency "3 Hz"
-      proprotor identify decay.csv --at "250 ktas" --called beam --frequency "3 Hz" --csv point.csv
+      proprotor identify decay.csv --between "0.5:4 s" --channel beam \\
+        --method moving-block --frequency "3 Hz"
+      proprotor identify decay.csv --at "250 ktas" --called beam \\
+        --frequency "3 Hz" --csv point.csv
     """
     point = _point(at, called)
     how: dict[str, Any] = {

@@ -58,8 +58,10 @@ def margins(
     \b
     Examples:
       proprotor margins my.toml --speed 150:400:10kt
-      proprotor margins my.toml --speed 150:400:10kt --phase-margin "60 deg" --plot margins.png
-      proprotor margins my.toml --speed "300 kt" --set "control.loops[damper].gain=0.02" --json
+      proprotor margins my.toml --speed 150:400:10kt --phase-margin "60 deg" \\
+        --plot margins.png
+      proprotor margins my.toml --speed "300 kt" \\
+        --set "control.loops[damper].gain=0.02" --json
     """
     needed = _needed(gain_margin, phase_margin)
     case = request.load()

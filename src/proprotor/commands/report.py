@@ -70,7 +70,8 @@ def report(
     Examples:
       proprotor report xv15
       proprotor report my.toml --out my.docx --margin-at "250 keas"
-      proprotor report my.toml --speed 100:400:5kt --set rotor.precone="1.5 deg" --pdf
+      proprotor report my.toml --speed 100:400:5kt --set rotor.precone="1.5 deg" \\
+        --pdf
     """
     # Here, because the packages behind a report take long to import.
     from proprotor.report import analyse, report_document

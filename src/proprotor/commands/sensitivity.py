@@ -70,7 +70,8 @@ def sensitivity(
     Examples:
       proprotor sensitivity xv15 --plot tornado.png
       proprotor sensitivity xv15 --of damping --speed "300 kt" --mode chord
-      proprotor sensitivity xv15 --wrt rotor.precone --wrt rotor.control_stiffness --json
+      proprotor sensitivity xv15 --wrt rotor.precone \\
+        --wrt rotor.control_stiffness --json
     """
     from proprotor.plots import plot_sensitivity  # here, so that --help answers without it
 

@@ -94,9 +94,12 @@ def study(
 
     \b
     Examples:
-      proprotor study xv15 --vary "rotor.precone=1:4:1 deg" --speed 160:460:20kt --flutter --csv designs.csv
-      proprotor study xv15 --vary "rotor.precone=1:4 deg" --vary "support.chord_frequency=0.9:1.1 of deck"
-        --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter --out study.nc --checkpoint batches
+      proprotor study xv15 --vary "rotor.precone=1:4:1 deg" --speed 160:460:20kt \\
+        --flutter --csv designs.csv
+      proprotor study xv15 --vary "rotor.precone=1:4 deg" \\
+        --vary "support.chord_frequency=0.9:1.1 of deck" \\
+        --sample latin-hypercube --size 1000 --speed 160:460:20kt --flutter \\
+        --out study.nc --checkpoint batches
       proprotor study study.nc --csv designs.csv
     """
     files = {"results": out} | _outputs_in_file(request.name)

@@ -44,8 +44,10 @@ def sweep(
     Examples:
       proprotor sweep xv15 --speed 50:400:5kt --plot damping.png
       proprotor sweep xv15 --speed 50:400:5kt --set rotor.precone="1.5 deg"
-      proprotor sweep xv15 --speed 50:400:5kt --plot damping.png --points measured.csv
-      proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal --csv modes.csv
+      proprotor sweep xv15 --speed 50:400:5kt --plot damping.png \\
+        --points measured.csv
+      proprotor sweep xv15 --speed 50:400:5kt --pitch coupling --locked gimbal \\
+        --csv modes.csv
     """
     from proprotor.plots import plot_sweep  # here, so that --help answers without it
 

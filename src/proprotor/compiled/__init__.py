@@ -7,8 +7,10 @@ functions hand over. Nothing needs this room: without a compiler everything is c
     library      builds, keeps and loads the library; says why there is none
     eigenvalues  eigenvalues and right vectors of many matrices, roots of equations of motion
     plans        trims of blades and matrices of rotors by the plans of the derivation
+    in_flight    trim and matrices of rotors without any reservation in one call
     bounds       the bound on the path to a trim
     motion       equations of motion on a support, whether every motion has mass, state matrices
+    screening    nearest roots of the steps of scans, and which steps may hold a crossing
     shapes, shapes.c
                  motion of the coordinates in the modes
     single_file, interface.c, proprotor.h, proprotor.f90, matlab
@@ -21,10 +23,22 @@ functions hand over. Nothing needs this room: without a compiler everything is c
                  equations of motion: on a support, and solved for the accelerations
     bounds.h, bounds.c, rows.h
                  the bound; linear equations of a few rows
+    screening.h, screening.c, root_pairs.c
+                 the same for the roots of a step in lanes, and for two roots that cannot be told apart
     points.h, trim.h, whole.h, plain.c, general.c
                  for each set of plans: at many points, Newton's method for the trim, trim and matrices in one go
 
 The public names of these modules, but for `columns`, are the room's face.
 """
 
-__all__ = ["bounds", "eigenvalues", "library", "motion", "plans", "shapes", "single_file"]
+__all__ = [
+    "bounds",
+    "eigenvalues",
+    "in_flight",
+    "library",
+    "motion",
+    "plans",
+    "screening",
+    "shapes",
+    "single_file",
+]

@@ -80,68 +80,82 @@ void state_matrices(int n, int count_held, const int32_t *held, ptrdiff_t count,
 #define HUB 6 /* coordinates of a hub, the first of a rotor alone */
 #define MOST 64
 
-/* Put a matrix (points, size, columns) of a rotor alone on a support with `modes` coordinates, whose hub moves by `hub`
-   (6, modes): its rows, and its columns too if these are coordinates, not inputs. The support's own matrix is added. */
-static void put_on_support(ptrdiff_t points, int size, int columns, int modes, int are_inputs, const double *rotor, const struct column *hub, const struct column *addition, double *found)
+/* Put a matrix (points, size, columns) of a rotor alone on a support with `modes` coordinates, whose hub moves by `motion`
+   (6, modes), in the lanes from a point on: its rows, and its columns too if these are coordinates, not inputs. The
+   support's own matrix is added. */
+static void put_on_support(ptrdiff_t point, ptrdiff_t points, int size, int columns, int modes, const lanes *motion, const double *rotor, const struct column *addition, double *found)
 {
-    int rows = modes + size - HUB, moved = are_inputs ? 0 : HUB, first = are_inputs ? 0 : modes;
+    int rows = modes + size - HUB, moved = addition ? HUB : 0, first = addition ? modes : 0;
     int wide = first + columns - moved;
     ptrdiff_t own = (ptrdiff_t)size * columns, result = (ptrdiff_t)rows * wide;
-    for (ptrdiff_t point = 0; point < points; point += LANES) {
-        lanes motion[HUB * MOST], at_hub[HUB * MOST], row[MOST + HUB], sum[MOST];
-        load_row(hub->at, hub->point, point, points, (ptrdiff_t)HUB * modes, motion);
-        for (int i = 0; i < size; i++) {
-            lanes *into = i < HUB ? at_hub + i * MOST : sum;
-            load_row(rotor + (ptrdiff_t)i * columns, own, point, points, columns, row);
-            for (int j = 0; j < first; j++) into[j] = all(0.0);
-            for (int k = 0; k < moved; k++)
-                for (int j = 0; j < first; j++) into[j] += row[k] * motion[k * modes + j];
-            for (int j = first; j < wide; j++) into[j] = row[moved + j - first];
-            if (i >= HUB) store_row(sum, found + (ptrdiff_t)(modes + i - HUB) * wide, result, point, points, wide);
-        }
-        for (int i = 0; i < modes; i++) {
-            if (first) load_row(addition->at + (ptrdiff_t)i * modes, addition->point, point, points, first, sum);
-            for (int j = first; j < wide; j++) sum[j] = all(0.0);
-            for (int k = 0; k < HUB; k++)
-                for (int j = 0; j < wide; j++) sum[j] += motion[k * modes + i] * at_hub[k * MOST + j];
-            store_row(sum, found + (ptrdiff_t)i * wide, result, point, points, wide);
-        }
+    lanes at_hub[HUB * MOST], row[MOST + HUB], sum[MOST];
+    for (int i = 0; i < size; i++) {
+        lanes *into = i < HUB ? at_hub + i * MOST : sum;
+        load_row(rotor + (ptrdiff_t)i * columns, own, point, points, columns, row);
+        for (int j = 0; j < first; j++) into[j] = all(0.0);
+        for (int k = 0; k < moved; k++)
+            for (int j = 0; j < first; j++) into[j] += row[k] * motion[k * modes + j];
+        for (int j = first; j < wide; j++) into[j] = row[moved + j - first];
+        if (i >= HUB) store_row(sum, found + (ptrdiff_t)(modes + i - HUB) * wide, result, point, points, wide);
     }
+    for (int i = 0; i < modes; i++) {
+        if (first) load_row(addition->at + (ptrdiff_t)i * modes, addition->point, point, points, first, sum);
+        for (int j = first; j < wide; j++) sum[j] = all(0.0);
+        for (int k = 0; k < HUB; k++)
+            for (int j = 0; j < wide; j++) sum[j] += motion[k * modes + i] * at_hub[k * MOST + j];
+        store_row(sum, found + (ptrdiff_t)i * wide, result, point, points, wide);
+    }
+}
+
+/* Return in which lanes every motion has mass for certain, by the pivots of M + its transpose; `rows` becomes its factor. */
+static whole has_mass(int n, lanes *rows)
+{
+    whole certain = every(-1);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j <= i; j++) rows[i * n + j] += rows[j * n + i];
+    for (int k = 0; k < n; k++) {
+        /* Row k of the factor: its entries times their pivots, then divided by these. */
+        lanes pivot = rows[k * n + k];
+        for (int j = 0; j < k; j++) {
+            lanes sum = rows[k * n + j];
+            for (int i = 0; i < j; i++) sum -= rows[k * n + i] * rows[j * n + i];
+            rows[k * n + j] = sum;
+        }
+        for (int j = 0; j < k; j++) {
+            lanes factor = rows[k * n + j] * rows[j * n + j];
+            pivot -= factor * rows[k * n + j];
+            rows[k * n + j] = factor;
+        }
+        certain &= (pivot > CLEARLY_MASS * rows[k * n + k]) & (pivot < INFINITY); /* false for NaN */
+        rows[k * n + k] = 1.0 / pivot;
+    }
+    return certain;
+}
+
+static void find_mass(ptrdiff_t point, ptrdiff_t points, int n, const double *mass, unsigned char *found, lanes *rows)
+{
+    load_row(mass, (ptrdiff_t)n * n, point, points, (ptrdiff_t)n * n, rows);
+    whole certain = has_mass(n, rows);
+    for (int lane = 0; lane < LANES && point + lane < points; lane++) found[point + lane] = certain[lane] != 0;
 }
 
 /* Matrices M, C, K (points, size, size) and, unless it is null, B (points, size, inputs) of a rotor alone on a support,
-   with the support's own M, C, K added: (points, modes + size - 6, ...). */
-void on_support(ptrdiff_t points, int size, int modes, int inputs, const double *const *rotor, const struct column *hub, const struct column *additions, double *const *found)
-{
-    for (int k = 0; k < 3; k++) put_on_support(points, size, size, modes, 0, rotor[k], hub, &additions[k], found[k]);
-    if (rotor[3]) put_on_support(points, size, inputs, modes, 1, rotor[3], hub, 0, found[3]);
-}
-
-/* Find in which mass matrices (points, n, n) every motion has mass for certain, by the pivots of M + its transpose. `rows`
-   has room for n * n. */
-void have_mass(ptrdiff_t points, int n, const double *mass, unsigned char *found, lanes *rows)
+   with the support's own M, C, K added: (points, modes + size - 6, ...); and in which mass matrices every motion has
+   mass for certain. `rows` has room for one of these. */
+void on_support(ptrdiff_t points, int size, int modes, int inputs, const double *const *rotor, const struct column *hub, const struct column *additions, double *const *found, unsigned char *certain, lanes *rows)
 {
     for (ptrdiff_t point = 0; point < points; point += LANES) {
-        whole certain = every(-1);
-        load_row(mass, (ptrdiff_t)n * n, point, points, (ptrdiff_t)n * n, rows);
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j <= i; j++) rows[i * n + j] += rows[j * n + i];
-        for (int k = 0; k < n; k++) {
-            /* Row k of the factor: its entries times their pivots, then divided by these. */
-            lanes pivot = rows[k * n + k];
-            for (int j = 0; j < k; j++) {
-                lanes sum = rows[k * n + j];
-                for (int i = 0; i < j; i++) sum -= rows[k * n + i] * rows[j * n + i];
-                rows[k * n + j] = sum;
-            }
-            for (int j = 0; j < k; j++) {
-                lanes factor = rows[k * n + j] * rows[j * n + j];
-                pivot -= factor * rows[k * n + j];
-                rows[k * n + j] = factor;
-            }
-            certain &= pivot > CLEARLY_MASS * rows[k * n + k]; /* false for NaN */
-            rows[k * n + k] = 1.0 / pivot;
-        }
-        for (int lane = 0; lane < LANES && point + lane < points; lane++) found[point + lane] = certain[lane] != 0;
+        lanes motion[HUB * MOST];
+        load_row(hub->at, hub->point, point, points, (ptrdiff_t)HUB * modes, motion);
+        for (int k = 0; k < 3; k++)
+            put_on_support(point, points, size, size, modes, motion, rotor[k], &additions[k], found[k]);
+        if (rotor[3]) put_on_support(point, points, size, inputs, modes, motion, rotor[3], NULL, found[3]);
+        find_mass(point, points, modes + size - HUB, found[0], certain, rows);
     }
+}
+
+/* Find in which mass matrices (points, n, n) every motion has mass for certain. `rows` has room for n * n. */
+void have_mass(ptrdiff_t points, int n, const double *mass, unsigned char *found, lanes *rows)
+{
+    for (ptrdiff_t point = 0; point < points; point += LANES) find_mass(point, points, n, mass, found, rows);
 }

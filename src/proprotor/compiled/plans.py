@@ -15,15 +15,15 @@ from proprotor.compiled.columns import address, place_of
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
-_POWERS = 3
+POWERS = 3
 _ALONG = (
     *("radius", "chord", "twist", "bent", "square_ratio", "cube_ratio"),
     *("lift_slope", "zero_lift_angle", "drag", "moment"),
 )
-_OF_POINTS = ("tip", "load", "collective", "structural_offset")
-_FIRST_STATIONS, _FIRST_POINTS = (
+OF_POINTS = ("tip", "load", "collective", "structural_offset")
+_FIRST_STATIONS, FIRST_POINTS = (
     2,
-    2 + 3 * (len(_ALONG) + _POWERS),
+    2 + 3 * (len(_ALONG) + POWERS),
 )  # words of the record of blades, see points.h
 
 
@@ -42,29 +42,6 @@ class _Search(ctypes.Structure):
         ("rows", ctypes.c_void_p),
         *((name, ctypes.c_int32) for name in ("target", "diagonal", "unloaded", "most", "ends_near")),
         *((name, _Layout) for name in ("residual", "slopes", "work", "work_slopes", "precone")),
-    )
-
-
-class _Limits(ctypes.Structure):
-    """What keeps a point from being without reservation, see whole.h."""
-
-    _fields_ = (
-        *(
-            (name, ctypes.c_double)
-            for name in ("angle", "from_air", "induced", "incidence", "mach", "no_spring")
-        ),
-        ("finds_collective", ctypes.c_int32),
-        ("lag_is_free", ctypes.c_int32),
-        ("sprung", ctypes.c_ubyte * 4),
-    )
-
-
-class _Rotors(ctypes.Structure):
-    """Results of `rotors_in_flight`, see whole.h."""
-
-    _fields_ = (
-        *((name, ctypes.c_void_p) for name in ("state", "thrust", "torque", "iterations", "served")),
-        ("matrices", ctypes.c_void_p * 4),
     )
 
 
@@ -127,7 +104,7 @@ class Stations:
         weights : array (stations, 3) or (n, stations, 3)
         """
         kept = [np.asarray(along[name], dtype=float) for name in _ALONG]
-        kept += [np.asarray(weights[..., power], dtype=float) for power in range(_POWERS)]
+        kept += [np.asarray(weights[..., power], dtype=float) for power in range(POWERS)]
         columns = np.array([place_of(array) for array in kept], dtype=np.intp)
         return cls(np.array(ends, dtype=np.intp), columns, kept)
 
@@ -153,12 +130,12 @@ class Blades:
 
     def record(self, plans: ModuleType) -> tuple[Array, list[Array]]:
         """Return the blades as the library takes them, see points.h, and the arrays that the record points at."""
-        names = (*_OF_POINTS, *plans.QUANTITIES)
+        names = (*OF_POINTS, *plans.QUANTITIES)
         columns, kept = _columns(names, {**self.quantities, **self.of_points}, self.sides)
-        record = np.empty(_FIRST_POINTS + columns.size, dtype=np.intp)
+        record = np.empty(FIRST_POINTS + columns.size, dtype=np.intp)
         record[0], record[1] = len(self.stations.ends) - 1, self.stations.ends.ctypes.data
-        record[_FIRST_STATIONS:_FIRST_POINTS] = self.stations.columns.ravel()
-        record[_FIRST_POINTS:] = columns.ravel()
+        record[_FIRST_STATIONS:FIRST_POINTS] = self.stations.columns.ravel()
+        record[FIRST_POINTS:] = columns.ravel()
         return record, kept
 
 
@@ -221,51 +198,6 @@ class Search:
     most: int
 
 
-class Limits(NamedTuple):
-    """What keeps a point from being without reservation.
-
-    angle : of coning, lag and elastic pitch, rad.
-    from_air : of the collective from the direction of the air, rad.
-    induced : thrust in that of a disk that turns the air by its whole speed.
-    incidence, mach : angle of attack, rad, and Mach number of outboard sections.
-    no_spring : lag spring in the flap spring that holds nothing.
-    finds_collective, lag_is_free : bool
-    sprung : tuple of bool
-        Which of the free unknowns are those of flap and lag.
-    """
-
-    angle: float
-    from_air: float
-    induced: float
-    incidence: float
-    mach: float
-    no_spring: float
-    finds_collective: bool
-    lag_is_free: bool
-    sprung: tuple[bool, ...]
-
-
-class InFlight(NamedTuple):
-    """Rotors at n points; the numbers of points that are not `served` mean nothing.
-
-    served : array (n,)
-    state : array (4, n)
-        Unknowns of the trim.
-    thrust, torque : array (n,)
-        Of the rotor.
-    iterations : array (n,)
-    matrices : dict
-        M, C, K and B (n, rows, columns).
-    """
-
-    served: Array
-    state: Array
-    thrust: Array
-    torque: Array
-    iterations: Array
-    matrices: dict[str, Array]
-
-
 class Searched(NamedTuple):
     """Results of a search at n points; those that are NaN belong to points that were not searched.
 
@@ -304,7 +236,7 @@ def search_trim(
         found = found._replace(
             before=np.full((4, points), np.nan),
             work=np.full((points, 5), np.nan),
-            moments=np.full((len(plans.SECTION_LOADS) - 2, _POWERS, segments, points), np.nan),
+            moments=np.full((len(plans.SECTION_LOADS) - 2, POWERS, segments, points), np.nan),
             doubts=np.full((2, points, stations), np.nan),
         )
     parts = found._asdict()
@@ -313,57 +245,14 @@ def search_trim(
     results = _Found(
         state=state.ctypes.data, iterations=iterations.ctypes.data, active=arrived.ctypes.data, **places
     )
-    _function(plans, "search_trim")(
+    function_of(plans, "search_trim")(
         ctypes.c_ssize_t(points),
         address(record),
-        ctypes.byref(_search_of(plans, search)),
+        ctypes.byref(search_of(plans, search)),
         ctypes.byref(results),
     )
     del kept
     return found
-
-
-def rotors_in_flight(
-    plans: ModuleType,
-    points: int,
-    blades: Blades,
-    stages: tuple[Search, Search],
-    limits: Limits,
-    shapes: Mapping[str, tuple[int, int]],
-) -> InFlight:
-    """Return trim and matrices of the rotors without any reservation, in one call.
-
-    Parameters
-    ----------
-    plans : module
-    points : int
-    blades : Blades
-    stages : two of Search
-        From the undeflected blade near the trim, and on to the trim.
-    limits : Limits
-    shapes : mapping
-        Rows and columns of M, C, K and B.
-    """
-    record, kept = blades.record(plans)
-    numbers = np.empty((6, points))
-    counts, served = np.empty(points, dtype=np.int64), np.empty(points, dtype=bool)
-    matrices = {name: np.empty((points, *shape)) for name, shape in shapes.items()}
-    state, thrust, torque = numbers[:4], numbers[4], numbers[5]
-    arrays = (state, thrust, torque, counts, served, *matrices.values())
-    places = np.array([array.__array_interface__["data"][0] for array in arrays], dtype=np.intp)
-    near, last = (ctypes.byref(_search_of(plans, stage)) for stage in stages)
-    _function(plans, "rotors_in_flight")(
-        ctypes.c_ssize_t(points),
-        address(record),
-        near,
-        last,
-        ctypes.byref(_limits_of(limits)),
-        ctypes.byref(_layouts(plans)),
-        address(_moment_places(plans)),
-        address(places),
-    )
-    del kept
-    return InFlight(served, state, thrust, torque, counts, matrices)
 
 
 def balance_of_blade(
@@ -386,9 +275,9 @@ def balance_of_blade(
     record, kept = blades.record(plans)
     structure = np.empty((points, len(_results(plans.BALANCE))))
     work = np.empty((points, len(_results(plans.WORK))))
-    moments = np.empty((len(plans.SECTION_LOADS) - 2, _POWERS, len(blades.stations.ends) - 1, points))
+    moments = np.empty((len(plans.SECTION_LOADS) - 2, POWERS, len(blades.stations.ends) - 1, points))
     found = np.empty((2, points, int(blades.stations.ends[-1]))) if doubts else None
-    _function(plans, "balance_of_blade")(
+    function_of(plans, "balance_of_blade")(
         ctypes.c_ssize_t(points),
         *map(address, (record, structure, work, moments)),
         None if found is None else address(found),
@@ -406,25 +295,25 @@ def matrices_of_rotor(
 ) -> dict[str, Array]:
     """Return M, C, K and B (n, rows, columns) of a rotor from its quantities and those of its segments in the air."""
     columns, kept = _columns(plans.QUANTITIES, quantities, segments or {})
-    record = np.zeros(_FIRST_POINTS + 3 * len(_OF_POINTS) + columns.size, dtype=np.intp)
+    record = np.zeros(FIRST_POINTS + 3 * len(OF_POINTS) + columns.size, dtype=np.intp)
     record[0] = 0 if segments is None else len(segments["beyond_flap_hinge"])
     record[-columns.size :] = columns.ravel()
     found = {name: np.empty((points, *shape)) for name, shape in shapes.items()}
     addresses = (ctypes.c_void_p * len(found))(*(matrix.ctypes.data for matrix in found.values()))
-    _function(plans, "matrices_of_rotor")(
-        ctypes.c_ssize_t(points), address(record), ctypes.byref(_layouts(plans)), ctypes.byref(addresses)
+    function_of(plans, "matrices_of_rotor")(
+        ctypes.c_ssize_t(points), address(record), ctypes.byref(layouts_of(plans)), ctypes.byref(addresses)
     )
     del kept
     return found
 
 
-def _function(plans: ModuleType, name: str) -> Any:
+def function_of(plans: ModuleType, name: str) -> Any:
     """Return a function of the library for some plans."""
     return getattr(library(), f"{plans.__name__.rpartition('.')[2]}_{name}")
 
 
 @cache
-def _search_of(plans: ModuleType, search: Search) -> _Search:
+def search_of(plans: ModuleType, search: Search) -> _Search:
     """Return a search as the library takes it."""
     unknowns, rows = (np.array(places, dtype=np.int32) for places in (search.unknowns, search.rows))
     _TABLES.extend((unknowns, rows))
@@ -437,22 +326,7 @@ def _search_of(plans: ModuleType, search: Search) -> _Search:
 
 
 @cache
-def _limits_of(limits: Limits) -> _Limits:
-    """Return limits as the library takes them."""
-    *numbers, sprung = limits
-    return _Limits(*numbers, (ctypes.c_ubyte * 4)(*sprung))
-
-
-@cache
-def _moment_places(plans: ModuleType) -> Array:
-    """Return the places of the radial moments of the loads among the quantities, -1 for one that no plan takes."""
-    known = {name: place for place, name in enumerate(plans.QUANTITIES)}
-    names = [f"{load}_{power}" for load in plans.SECTION_LOADS[:-2] for power in range(_POWERS)]
-    return np.array([known.get(name, -1) for name in names], dtype=np.int32)
-
-
-@cache
-def _layouts(plans: ModuleType) -> _Layouts:
+def layouts_of(plans: ModuleType) -> _Layouts:
     rotor, airloads, segment = plans.IN_VACUUM, plans.OF_AIRLOADS, plans.SEGMENT
     found = _Layouts()
     for of, tables in (("in_vacuum", rotor), ("of_airloads", airloads), ("segment", segment)):

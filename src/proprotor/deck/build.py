@@ -93,9 +93,8 @@ def assemble(
         )
         support = settled(built, at_rest)
         as_given = _with_rotor(support, numbers, at_rest) if fitted else support
-        doubts = spring_warnings(as_given, at_rest, rotor.gimbal_stiffness)
-        if deck.support.kind in _FROM_FILES:
-            doubts += unit_warnings(support, at_rest)
+        from_files = support if deck.support.kind in _FROM_FILES else None
+        doubts = partial(_doubts, as_given, from_files, at_rest, rotor.gimbal_stiffness)
         if deck.support.kind == "aircraft":
             derived |= fuselage_of(deck.support, numbers)
     closed = [with_numbers(loop, numbers) for loop in (loops_of(deck) if loops is None else loops)]
@@ -104,7 +103,8 @@ def assemble(
         title=deck.case.title,
         description=deck.case.description,
         calibration=deck.case.calibration,
-        warnings=(*deck.case.warnings, *doubts, *law_warnings(closed)),
+        remarks=(*deck.case.warnings, *law_warnings(closed)),
+        find_doubts=doubts,
         rotor=rotor,
         operation=operation,
         support=support,
@@ -116,6 +116,14 @@ def assemble(
         given=numbers,
         loops=tuple(closed),
     )
+
+
+def _doubts(
+    as_given: NormalModes, from_files: NormalModes | None, at_rest: Array, gimbal_stiffness: Any
+) -> tuple[str, ...]:
+    """Return warnings of a hub spring, and of the units of a support whose files do not tell them."""
+    units = () if from_files is None else unit_warnings(from_files, at_rest)
+    return spring_warnings(as_given, at_rest, gimbal_stiffness) + units
 
 
 class _Machinery(NamedTuple):

@@ -6,7 +6,6 @@ docs/decks.md (`proprotor.deck.fields_page`) lists them.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterator
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
@@ -18,8 +17,9 @@ from proprotor.control.control_loop import ControlLoop
 from proprotor.deck import control_sections, support_sections
 from proprotor.deck import sections as deck
 from proprotor.deck.fields import AfterChoice, Reading, Section
-from proprotor.deck.sections import LISTS, section_places, sections_at, sections_of
-from proprotor.errors import InputError, list_choices
+from proprotor.deck.file import list_cases
+from proprotor.deck.sections import LISTS, SUPPORT_KINDS, section_places, sections_at, sections_of
+from proprotor.errors import InputError, list_choices, nearest_name
 from proprotor.rotor.airfoil import Airfoil
 from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.drive_train import DriveTrain
@@ -128,11 +128,12 @@ def find_fields(path: str) -> tuple[DeckField, ...]:
 
 
 def _hint(wanted: str) -> str:
-    """Return a hint at the nearest field, by its whole path or its last name."""
+    """Return a hint at the nearest field, by its whole path or its last name, kind of support or bundled deck."""
     known = [plain_path(field.path) for field in deck_fields()]
     names = {path if "." in wanted else path.rpartition(".")[2]: path for path in known}
-    nearest = difflib.get_close_matches(wanted.lower(), names, n=1)
-    return f"did you mean {names[nearest[0]]}?" if nearest else "`proprotor describe` lists them"
+    names |= {name: name for name in (*SUPPORT_KINDS, *list_cases())}
+    nearest = nearest_name(wanted, names)
+    return f"did you mean {names[nearest]}?" if nearest else "`proprotor describe` lists them"
 
 
 def plain_path(path: str) -> str:
@@ -159,7 +160,7 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
             unit=_unit(reading),
             range=f"{reading.least} or more" if reading.form == "count" else reading.bound.range,
             required=field.is_required() or (is_one_side and name not in section.may_lack),
-            default=_default(field, reading, _defaults(section).get(name, MISSING)),
+            default=_default(field, reading, defaults_of(section).get(name, MISSING)),
             instead_of=_instead_of(section, name),
             form=reading.form,
         )
@@ -219,8 +220,8 @@ def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
 
 
 @cache
-def _defaults(section: type[Section]) -> dict[str, Any]:
-    """Return the defaults of the class that a section describes, by field."""
+def defaults_of(section: type[Section]) -> dict[str, Any]:
+    """Return the SI values of fields that a deck leaves out, by field, as far as the section or its class has them."""
     described: dict[type[Section], tuple[type, ...]] = {
         deck.RotorSection: (Rotor,),
         deck.AirfoilSection: (Airfoil, AirfoilRegions),
@@ -234,7 +235,8 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
         support_sections.WingAerodynamicsSection: (WingAerodynamics,),
         support_sections.AssumedShapeSection: (WingAerodynamics,),
     }
-    return {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
+    of_class = {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
+    return of_class | dict(section.defaults)
 
 
 def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
@@ -242,7 +244,8 @@ def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
     if field.is_required():
         return ""
     if isinstance(constructed, int | float) and not isinstance(constructed, bool):
-        return f"{constructed:g} {reading.unit}".strip()
+        unit = "" if isinstance(reading, AfterChoice) else reading.unit
+        return f"{constructed:g} {unit}".strip()
     is_word = isinstance(field.default, bool | str) and field.default != ""
     return list_choices((field.default,)) if is_word else ""
 

@@ -14,7 +14,7 @@ from proprotor.deck.default_provenance import with_default_provenance
 from proprotor.deck.left import nested
 from proprotor.deck.per_revolution import per_revolution_of
 from proprotor.deck.written import FileName
-from proprotor.errors import InputError, unknown_name
+from proprotor.errors import InputError, nearest_name, unknown_name
 from proprotor.files.text import is_file, read_text
 
 if TYPE_CHECKING:
@@ -120,7 +120,9 @@ def _find(name: str, folder: Path) -> Traversable:
     except OSError as error:  # a name that is too long, a folder without permission
         raise InputError("deck", name, f"cannot be read ({error.strerror})") from None
     if name.endswith(".toml") or Path(name).name != name:
-        raise InputError("deck", name, "no such file")
+        nearest = nearest_name(Path(name).name.removesuffix(".toml"), bundled)
+        hint = f"; did you mean the bundled deck {nearest}?" if nearest else ""
+        raise InputError("deck", name, f"no such file{hint}")
     raise InputError("deck", name, unknown_name(name, list_cases(), "deck"))
 
 

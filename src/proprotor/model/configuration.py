@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -45,8 +46,11 @@ class Configuration:
     support : NormalModes
     calibration : str
         Which inputs were calibrated to which published result; empty when none was.
-    warnings : tuple of str
-        Remarks on the input that a reader of results needs.
+    remarks : tuple of str
+        Remarks on the input that deck and control laws bring.
+    find_doubts : callable
+        Returns further remarks, which follow from the numbers: found when `warnings` are read, because they take a
+        quarter of the time that many designs take to build, and nobody reads those of the designs of a study.
     sources : mapping of str to Datum
         Every number of the deck by its field (``rotor.radius``, ``support.modes[beam].frequency``): the
         value as written, its SI value and unit, status and source. Numbers that follow from numbers of the deck,
@@ -73,7 +77,8 @@ class Configuration:
     title: str = ""
     description: str = ""
     calibration: str = ""
-    warnings: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+    find_doubts: Callable[[], tuple[str, ...]] = tuple
     sources: Mapping[str, Datum] = field(default_factory=dict)
     frequencies: BladeFrequencies | None = None
     drive_train: DriveTrain | None = None
@@ -81,6 +86,11 @@ class Configuration:
     deck: Any = None
     given: Mapping[str, Datum] = field(default_factory=dict)
     loops: tuple[ControlLoop, ...] = ()
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Remarks on the input that a reader of results needs."""
+        return (*self.remarks, *self.find_doubts())
 
     def __repr__(self) -> str:
         """Return the rotor, its support and the doubtful numbers, in a few lines."""

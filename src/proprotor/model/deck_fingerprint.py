@@ -8,6 +8,7 @@ import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.files.fingerprint import fingerprint
+from proprotor.rotor.kept import kept
 
 if TYPE_CHECKING:
     from proprotor.model.configuration import Configuration
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 _DIGITS = 16
 
 
+@kept
 def deck_fingerprint(case: Configuration) -> str:
     """Return a text that is the same for the same numbers and choices of a deck, whatever their names and titles.
 

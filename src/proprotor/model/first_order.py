@@ -55,7 +55,7 @@ def state_matrix(model: LinearModel) -> Array:
 
 def first_order(model: LinearModel) -> Array:
     """Return A as `state_matrix` does, for a model whose mass matrices all have an inverse, see `have_modes`."""
-    if model.is_compiled and not any(map(np.iscomplexobj, (model.M, model.C, model.K))):
+    if model.is_compiled and all(part.dtype.kind == "f" for part in (model.M, model.C, model.K)):
         matrix = _compiled(model)
     else:
         states, shape = len(held_coordinates(model)) + len(model.dofs), model.M.shape[:-2]
@@ -178,8 +178,13 @@ def held_coordinates(model: LinearModel, states: int | None = None) -> list[int]
         count = int(np.count_nonzero(_anywhere(model.azimuths_held)))
     else:
         count = states - (2 * len(model.dofs) - len(model.rates) - len(azimuths))
-    loose = {*model.rates, *azimuths[count:]}
-    return [place for place, name in enumerate(model.dofs) if name not in loose]
+    return list(_places_without(model.dofs, (*model.rates, *azimuths[count:])))
+
+
+@lru_cache(maxsize=32)
+def _places_without(dofs: tuple[str, ...], loose: tuple[str, ...]) -> tuple[int, ...]:
+    """Return the places of all but some coordinates."""
+    return tuple(place for place, name in enumerate(dofs) if name not in loose)
 
 
 def lack_azimuths(model: LinearModel) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -173,6 +173,11 @@ class LinearModel:
         """Points (...) whose mass matrix has numbers, SI; failed points have NaN in place of these numbers."""
         return np.asarray(np.isfinite(self.M).all(axis=(-2, -1)))
 
+    def note_mass(self) -> None:
+        """Note what the caller has found: every mass matrix is finite and has an inverse."""
+        vars(self)["finite"] = np.ones(self.M.shape[:-2], dtype=bool)
+        vars(self)["massless"] = np.zeros(self.M.shape[:-2], dtype=bool)
+
     @cached_property
     def massless(self) -> Array:
         """Points (...) whose mass matrix, scaled to be dimensionless, has no inverse; False at failed points."""
@@ -185,7 +190,7 @@ class LinearModel:
         An interconnect shaft between two rotors holds the antisymmetric azimuth alone.
         """
         names = _AZIMUTHS if self.symmetry else (ROTOR_SPEED,)
-        return tuple(name for name in names if name in self.dofs)
+        return tuple(self.dofs[place] for place in _places_of(names, self.dofs))
 
     @cached_property
     def azimuths_held(self) -> Array:
@@ -193,8 +198,8 @@ class LinearModel:
 
         Without a shaft only the rate of an azimuth counts.
         """
-        places = [self.dofs.index(name) for name in self.azimuths]
-        return np.asarray(np.real(self.K.diagonal(0, -2, -1)[..., places]) > 0)
+        places = _places_of(self.azimuths, self.dofs)
+        return np.asarray(self.K.real[..., places, places] > 0)
 
     @property
     def shaft_holds_azimuth(self) -> Array:
@@ -260,6 +265,12 @@ class LinearModel:
         if self.symmetry:
             more["symmetry"] = tuple(self.symmetry[place] for place in places)
         return replace(self, dofs=tuple(dofs), B=inputs, hub=hub, shapes=shapes, **parts, **more)
+
+
+@lru_cache(maxsize=32)
+def _places_of(names: tuple[str, ...], dofs: tuple[str, ...]) -> list[int]:
+    """Return the places of some names among coordinates, without names that are not there; not to be written to."""
+    return [dofs.index(name) for name in names if name in dofs]
 
 
 def range_text(values: Array) -> str:

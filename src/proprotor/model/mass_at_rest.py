@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-from proprotor_equations import FIXED_COORDINATES, inertia, multiblade, offset_mass, pitch
+from proprotor_equations import FIXED_COORDINATES, offset_mass
 
 from proprotor.model.quantities import of_rotor
+from proprotor.rotor.fused import mass_at_trim, trim_integrals
 from proprotor.rotor.generated import evaluate
 from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import HUB
@@ -29,14 +29,11 @@ def mass_at_rest(rotor: Rotor) -> Array:
     array (..., 8, 8)
         On the coordinates `MASS_AT_REST`, in kg, kg m and kg m²; not to be written to.
     """
-    quantities = of_rotor(rotor) | dict.fromkeys(UNKNOWNS, 0.0)
-    quantities |= evaluate(inertia.trim_integrals, quantities)._asdict()
-    blade = evaluate(inertia.mass, quantities) + evaluate(pitch.mass, quantities)
+    quantities = of_rotor(rotor) | dict.fromkeys((*UNKNOWNS, "pitch"), 0.0)
+    quantities["beside_axis"] = rotor.is_beside_axis
+    quantities |= trim_integrals(quantities)
     if rotor.offset_mass is not None:
-        quantities |= {"pitch": 0.0}
         quantities |= evaluate(offset_mass.trim_integrals, quantities)._asdict()
-        blade = blade + evaluate(offset_mass.mass, quantities)
-    places = np.array([FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
-    found = np.asarray(evaluate(multiblade.mass, quantities, blade)[..., places[:, None], places])
+    found = mass_at_trim(quantities, [FIXED_COORDINATES.index(name) for name in MASS_AT_REST])
     found.flags.writeable = False
     return found

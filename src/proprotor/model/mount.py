@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from proprotor.compiled.motion import MOST_ROWS, on_support
+from proprotor.compiled.motion import MOST_ROWS, Support, on_support
 from proprotor.errors import InputError
 from proprotor.model.batches import at_rows, few_at_once, joint_shape
 from proprotor.model.linear_model import LinearModel
 from proprotor.model.massless import with_reasons
 from proprotor.model.rotor_share import refuse, without_rotors
+from proprotor.rotor.kept import kept
 from proprotor.rotor.motions import HUB, check_distinct
 from proprotor.rotor.trim import Trim
 from proprotor.support.normal_modes import NormalModes
@@ -48,35 +49,81 @@ def mount(rotor_alone: LinearModel, support: NormalModes) -> LinearModel:
         support is an aircraft with both halves of its motion, which has two rotors.
     """
     check_hub("dofs", rotor_alone)
-    if len(set(getattr(support, "symmetry", ()))) > 1:
-        rule = (
-            "has two rotors, see proprotor.model.pair.mount_pair; one rotor goes with one half of the motion"
-        )
-        raise InputError("support", "an aircraft", rule)
-    own = rotor_alone.dofs[len(HUB) :]
-    _check_names(support.names, own)
-    mass, refusal = without_rotors(support, [(support.hub, rotor_alone.mass_at_rest)])
-    additions = {"M": mass, "C": support.damping, "K": support.stiffness}
-    parts = (rotor_alone.M, support.hub, *additions.values())
-    loads = [] if support.loads is None else [support.loads]
-    shape = joint_shape(*(matrix.shape[:-2] for matrix in (*parts, *loads)))
+    at_rest = () if rotor_alone.mass_at_rest is None else rotor_alone.mass_at_rest
+    matrices = (support.mass, support.damping, support.stiffness, support.hub)
+    joint = _joint(support, rotor_alone.dofs[len(HUB) :], at_rest, *matrices)
+    loads = () if support.loads is None else support.loads.shape[:-2]
+    shape = joint_shape(rotor_alone.M.shape[:-2], joint.shape, loads)
     rotor_alone = broadcast(rotor_alone, shape)
-    matrices: dict[str, Any] = _on_support(rotor_alone, support.hub, additions)
+    found, certain = _on_support(rotor_alone, joint)
     if rotor_alone.B is not None and support.loads is not None:
-        matrices["B"] = _with_inputs(matrices["B"], support.loads)
-    still = np.zeros((*support.hub.shape[:-1], len(own)))
+        found["B"] = _with_inputs(found["B"], support.loads)
     coupled = replace(
         rotor_alone,
-        **matrices,
-        dofs=(*support.names, *own),
-        hub=np.concatenate([support.hub, still], axis=-1),
+        **found,
+        dofs=joint.dofs,
+        hub=joint.hub,
         rotor=rotor_alone,
         mass_at_rest=None,
         shapes=at_points(support.shapes, shape, 2),
         trim=with_warning(rotor_alone.trim, at_points(support.warning, shape, 0)),
         inputs=(*rotor_alone.inputs, *(support.inputs if rotor_alone.B is not None else ())),
     )
-    return refused_where(refusal, with_reasons(coupled), support)
+    if certain is not None and certain.all():
+        coupled.note_mass()
+    return refused_where(joint.refusal, with_reasons(coupled), support)
+
+
+class _Joint(NamedTuple):
+    """What a rotor on its support has at all airspeeds.
+
+    shape : of the batch of supports.
+    dofs : names of the coordinates of the support and of the rotor without its hub.
+    to_support : motion of the hub with the support's coordinates.
+    hub : the same with all coordinates.
+    additions : the support's own matrices by name, without the mass of its rotor.
+    refusal : see `without_rotors`.
+    compiled : the support as the compiled functions take it; empty until they do.
+    """
+
+    shape: tuple[int, ...]
+    dofs: tuple[str, ...]
+    to_support: Array
+    hub: Array
+    additions: dict[str, Array]
+    refusal: Array | None
+    compiled: list[Support]
+
+
+@kept
+def _joint(
+    support: NormalModes, own: tuple[str, ...], mass_at_rest: Array | tuple[()], *matrices: Array
+) -> _Joint:
+    """Return what a rotor with some coordinates of its own has in common on a support.
+
+    Parameters
+    ----------
+    support : NormalModes
+    own : tuple of str
+        Coordinates of the rotor without its hub.
+    mass_at_rest : array, or an empty tuple
+        Of the rotor; nothing where it is not known.
+    *matrices : arrays
+        Of the support, which may not be written to where the result is kept.
+    """
+    if len(set(getattr(support, "symmetry", ()))) > 1:
+        rule = (
+            "has two rotors, see proprotor.model.pair.mount_pair; one rotor goes with one half of the motion"
+        )
+        raise InputError("support", "an aircraft", rule)
+    _check_names(support.names, own)
+    at_rest = None if isinstance(mass_at_rest, tuple) else mass_at_rest
+    mass, refusal = without_rotors(support, [(support.hub, at_rest)])
+    additions = {"M": mass, "C": support.damping, "K": support.stiffness}
+    still = np.zeros((*support.hub.shape[:-1], len(own)))
+    hub = np.concatenate([support.hub, still], axis=-1)
+    shape = joint_shape(*(matrix.shape[:-2] for matrix in (support.hub, *additions.values())))
+    return _Joint(shape, (*support.names, *own), support.hub, hub, additions, refusal, [])
 
 
 def _with_inputs(columns: Array, loads: Array) -> Array:
@@ -138,15 +185,19 @@ def with_warning(trim: Trim, warning: Array | None) -> Trim:
     return replace(trim, warning=joined.reshape(trim.warning.shape))
 
 
-def _on_support(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) -> dict[str, Array]:
-    """Return Tᵀ (...) T of M, C, K plus the support's, and Tᵀ B; T = diag(Φ, 1) leaves the rotor's own block."""
-    if rotor.is_compiled and _are_served(rotor, hub, additions):
-        return _compiled(rotor, hub, additions)
-    found = {name: _of_one(getattr(rotor, name), hub, addition) for name, addition in additions.items()}
+def _on_support(rotor: LinearModel, joint: _Joint) -> tuple[dict[str, Any], Array | None]:
+    """Return Tᵀ (...) T of M, C, K plus the support's, and Tᵀ B; T = diag(Φ, 1) leaves the rotor's own block.
+
+    The second result says at which points (...) every motion has mass for certain, as far as this is known.
+    """
+    if rotor.is_compiled and _are_served(rotor, joint):
+        return _compiled(rotor, joint)
+    hub = joint.to_support
+    found = {name: _of_one(getattr(rotor, name), hub, addition) for name, addition in joint.additions.items()}
     if rotor.B is not None:
         at_hub = np.swapaxes(hub, -1, -2) @ rotor.B[..., : len(HUB), :]
         found["B"] = np.concatenate([at_hub, rotor.B[..., len(HUB) :, :]], axis=-2)
-    return found
+    return found, None
 
 
 def _of_one(matrix: Array, hub: Array, addition: Array) -> Array:
@@ -166,26 +217,34 @@ def _of_one(matrix: Array, hub: Array, addition: Array) -> Array:
     return whole
 
 
-def _are_served(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) -> bool:
+def _are_served(rotor: LinearModel, joint: _Joint) -> bool:
     """Return whether compiled functions put such matrices on a support: real ones with few rows."""
-    few = hub.shape[-1] + len(rotor.dofs) - len(HUB) <= MOST_ROWS
-    return few and not any(map(np.iscomplexobj, (*rotor.matrices.values(), hub, *additions.values())))
+    numbers = (*rotor.matrices.values(), joint.to_support, *joint.additions.values())
+    return len(joint.dofs) <= MOST_ROWS and all(part.dtype.kind == "f" for part in numbers)
 
 
-def _compiled(rotor: LinearModel, hub: Array, additions: Mapping[str, Array]) -> dict[str, Array]:
+def _compiled(rotor: LinearModel, joint: _Joint) -> tuple[dict[str, Array], Array]:
     """Return the same as `_on_support` by compiled functions."""
     shape, matrices = rotor.M.shape[:-2], rotor.matrices
+    alike = joint.shape == ()
+    if alike and not joint.compiled:
+        joint.compiled.append(Support(joint.to_support, tuple(joint.additions.values())))
+    support = joint.compiled[0] if alike else _supports(joint, shape)
+    flat = [matrix.reshape(-1, *matrix.shape[-2:]) for matrix in matrices.values()]
+    found, certain = on_support(flat, support)
+    named = zip(matrices, found, strict=True)
+    return {name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in named}, certain
+
+
+def _supports(joint: _Joint, shape: tuple[int, ...]) -> Support:
+    """Return supports that differ from point to point of a batch."""
     at_hub, *own = (
         part
         if part.ndim == 2
         else np.broadcast_to(part, (*shape, *part.shape[-2:])).reshape(-1, *part.shape[-2:])
-        for part in (hub, *additions.values())
+        for part in (joint.to_support, *joint.additions.values())
     )
-    flat = [matrix.reshape(-1, *matrix.shape[-2:]) for matrix in matrices.values()]
-    found = on_support(flat, at_hub, own)
-    return {
-        name: matrix.reshape(*shape, *matrix.shape[-2:]) for name, matrix in zip(matrices, found, strict=True)
-    }
+    return Support(at_hub, own)
 
 
 def _check_names(support: Sequence[str], own: tuple[str, ...]) -> None:

@@ -13,7 +13,9 @@ from proprotor_equations import FIXED_COORDINATES, airloads, multiblade
 from proprotor_equations import rotor as whole_rotor
 from proprotor_equations.coordinates import FIXED, Coordinate
 
+from proprotor.compiled.in_flight import Rotors
 from proprotor.errors import InputError
+from proprotor.model.batches import joint_shape
 from proprotor.model.inflow import with_inflow
 from proprotor.model.lift_lag import LaggingBlade, lagging_blade, reactionless_with_lift_lag, with_lift_lag
 from proprotor.model.linear_model import INPUTS, SWASHPLATE, LinearModel
@@ -24,7 +26,7 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
+from proprotor.rotor.in_flight import find_in_flight, rotors_of, serves_in_flight
 from proprotor.rotor.kept import kept
 from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.motions import (
@@ -100,51 +102,131 @@ def model_of(
     With `around` the model of a rotor with a periodic trim has a last axis of the batch for azimuths, and no averages.
     """
     choice = parse_options(options)
-    _check_pitch(rotor, choice)
+    design = _design(rotor, operation, choice)
     speed = in_metres_per_second(airspeed, operation.density)
-    shape = batch_shape(rotor, operation, speed, choice)
+    shape = joint_shape(design.shape, speed.shape)
     points = prod(shape)
     _check_memory(rotor, choice, points)
-    quantities = model_quantities(rotor, operation, choice, speed, shape)
-    sections, few = _sections(rotor, shape)
-    target = trim_target(rotor, operation)
-    if shape:
-        target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
-    reactionless = _reactionless(rotor, choice)
-    apart = reactionless_groups(reactionless) if reactionless else []
-    lagging: tuple[Coordinate, ...] = ()
-    if choice.blades_lag:
-        lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
-    inflow = INFLOW if choice.inflow_is_dynamic else ()
-    coordinates = (*FIXED, *inflow, *lagging, *(coordinate for group in apart for coordinate in group))
-    asked = _Asked(sections, few, quantities, choice, target, points)
+    asked = _asked(rotor, operation, choice, design, speed, shape)
     if choice.is_tilted:
         settled = asked.trimmed(one=shape == ())
-        made = _about_periodic_trim(_Tilted(rotor, choice, target, speed, shape, around), sections, settled)
+        tilted = _Tilted(rotor, choice, asked.target, speed, shape, around)
+        made = _about_periodic_trim(tilted, asked.sections, settled)
     else:
-        found, trim = asked.in_flight(reactionless, len(coordinates), one=shape == ())
+        found, trim = asked.in_flight(_rotors(rotor, operation, design, asked), design, one=shape == ())
         made = _Made(found, trim, speed, shape)
     matrices: dict[str, Any] = {
         name: matrix.reshape(*made.shape, *matrix.shape[-2:]) for name, matrix in made.matrices.items()
     }
     model = LinearModel(
         **matrices,
-        dofs=tuple(coordinate.name for coordinate in coordinates),
+        dofs=design.dofs,
         trim=Trim(**{name: value.reshape(made.shape) for name, value in vars(made.trim).items()}),
         airspeed=np.broadcast_to(made.airspeed, made.shape)
         if made.airspeed.shape != made.shape
         else made.airspeed,
         mass_at_rest=mass_at_rest(rotor),
         origin=Origin(choice, case),
-        rates=tuple(coordinate.name for coordinate in coordinates if coordinate.angle in (LIFT, "inflow")),
-        apart=tuple(tuple(coordinate.name for coordinate in group) for group in apart),
+        rates=design.rates,
+        apart=design.apart,
         swing=made.swing,
     )
     if choice.drive_train is not None and choice.drive_train.mast_stiffness is not None:
         model = with_mast(model, choice.drive_train)
-        coordinates = (*coordinates, Coordinate(MAST_TWIST, MAST_TWIST, 0, "", "rad"))
-    free = _free_coordinates(choice, coordinates)
-    return model if free == model.dofs else model.submodel(free)
+    return model if design.free == model.dofs else model.submodel(design.free)
+
+
+class _Design(NamedTuple):
+    """What the models of a rotor have in common at all airspeeds.
+
+    shape : of the batch of designs.
+    dofs, free : names of the coordinates of the equations, and of those that the options leave free.
+    rates, apart : as of `LinearModel`.
+    reactionless : number of blades whose reactionless motions are kept, or None.
+    quantities : of a single design but for the airspeed, by the names of the derivation; nothing for many designs.
+    target : what closes the trim.
+    """
+
+    shape: tuple[int, ...]
+    dofs: tuple[str, ...]
+    free: tuple[str, ...]
+    rates: tuple[str, ...]
+    apart: tuple[tuple[str, ...], ...]
+    reactionless: int | None
+    quantities: dict[str, Any]
+    target: Target
+
+
+@kept
+def _design(rotor: Rotor, operation: Operation, options: Options) -> _Design:
+    """Return what does not depend on the airspeed."""
+    _check_pitch(rotor, options)
+    still = np.zeros(())
+    shape = batch_shape(rotor, operation, still, options)
+    reactionless = _reactionless(rotor, options)
+    apart = reactionless_groups(reactionless) if reactionless else []
+    lagging: tuple[Coordinate, ...] = ()
+    if options.blades_lag:
+        lagging, apart = lag_coordinates(), [with_lag(group) for group in apart]
+    inflow = INFLOW if options.inflow_is_dynamic else ()
+    coordinates = (*FIXED, *inflow, *lagging, *(coordinate for group in apart for coordinate in group))
+    train = options.drive_train
+    twists = train is not None and train.mast_stiffness is not None
+    mast = (Coordinate(MAST_TWIST, MAST_TWIST, 0, "", "rad"),) if twists else ()
+    return _Design(
+        shape,
+        tuple(coordinate.name for coordinate in coordinates),
+        _free_coordinates(options, (*coordinates, *mast)),
+        tuple(coordinate.name for coordinate in coordinates if coordinate.angle in (LIFT, "inflow")),
+        tuple(tuple(coordinate.name for coordinate in group) for group in apart),
+        reactionless,
+        {} if shape else model_quantities(rotor, operation, options, still, ()),
+        trim_target(rotor, operation),
+    )
+
+
+def _asked(
+    rotor: Rotor,
+    operation: Operation,
+    options: Options,
+    design: _Design,
+    speed: Array,
+    shape: tuple[int, ...],
+) -> _Asked:
+    """Return the blades of a rotor at airspeeds, all flattened over the batch."""
+    sections, few = _sections(rotor, shape)
+    if design.shape:
+        quantities = model_quantities(rotor, operation, options, speed, shape)
+    else:
+        quantities = {**design.quantities, "airspeed": flat(speed, shape) if shape else speed}
+    target = design.target
+    if shape and not target.windmilling:
+        target = replace(target, collective=flat(target.collective, shape), load=flat(target.load, shape))
+    return _Asked(sections, few, quantities, options, target, prod(shape))
+
+
+def _rotors(rotor: Rotor, operation: Operation, design: _Design, asked: _Asked) -> Rotors | None:
+    """Return the rotors for the compiled call that finds trim and matrices; None where it does not serve them."""
+    if asked.options.backend != "compiled":
+        return None
+    if design.shape:
+        return _served(asked)
+    takes_derivative = asked.quantities["airspeed"].dtype.kind == "c"
+    return None if takes_derivative else _own_rotors(rotor, operation, asked.options)
+
+
+@kept
+def _own_rotors(rotor: Rotor, operation: Operation, options: Options) -> Rotors | None:
+    """Return the same of a single design, at any airspeed."""
+    design = _design(rotor, operation, options)
+    return _served(_asked(rotor, operation, options, design, np.zeros(()), ()))
+
+
+def _served(asked: _Asked) -> Rotors | None:
+    """Return the same of blades that are asked for."""
+    sections, few, quantities, options, target, points = asked
+    balance = balance_of(sections, quantities, options, target, points)
+    return rotors_of(balance) if serves_in_flight(balance, few) else None
 
 
 class _Asked(NamedTuple):
@@ -173,21 +255,21 @@ class _Asked(NamedTuple):
             sections, few, take(self.quantities, rows), self.options, replace(target, **own), len(rows)
         )
 
-    def in_flight(self, reactionless: int | None, n: int, one: bool) -> tuple[dict[str, Array], Trim]:
+    def in_flight(self, rotors: Rotors | None, design: _Design, one: bool) -> tuple[dict[str, Array], Trim]:
         """Return M, C, K and B of all points, see `_matrices`, and their trim: in one call as far as this is served."""
-        sections, few, quantities, options, target, points = self
-        balance = balance_of(sections, quantities, options, target, points)
-        if not serves_in_flight(balance, few):
+        options, points = self.options, self.points
+        if rotors is None:
             settled = self.trimmed(one)
-            return _matrices(sections, options, settled, reactionless, n, one), settled.trim
-        found = find_in_flight(balance)
+            return _matrices(self.sections, options, settled, design, one), settled.trim
+        own_speeds = None if design.shape else self.quantities["airspeed"].reshape(-1)
+        found = find_in_flight(rotors, points, own_speeds)
         if not options.pitch_is_free:
             found.matrices["B"] = _without_pitch_equations(found.matrices["K"], found.matrices["B"])
         if not found.served.all():
             left = np.flatnonzero(~found.served)
             own = self.at(left) if points > len(left) else self
             settled = own.trimmed(one)
-            matrices = _matrices(own.sections, options, settled, reactionless, n, one)
+            matrices = _matrices(own.sections, options, settled, design, one)
             for name, matrix in matrices.items():
                 found.matrices[name][left] = matrix
             for name, values in vars(settled.trim).items():
@@ -315,13 +397,13 @@ def _free_coordinates(options: Options, coordinates: tuple[Coordinate, ...]) -> 
 
 
 def _matrices(
-    sections: BladeSections, options: Options, settled: Settled, reactionless: int | None, n: int, one: bool
+    sections: BladeSections, options: Options, settled: Settled, design: _Design, one: bool
 ) -> dict[str, Array]:
     """Return M, C, K (points, n, n) and B (points, n, 6) in the fixed frame; points without a trim are NaN.
 
-    `reactionless` is the number of blades whose reactionless motions follow the coordinates of Eq. 17, or None. `one`
-    says that there is one point, by plain numbers and not an array of one.
+    `one` says that there is one point, by plain numbers and not an array of one.
     """
+    reactionless, n = design.reactionless, len(design.dofs)
     points, rows = len(settled.trim.converged), settled.rows
     found: dict[str, Array] = {}
     if len(rows):

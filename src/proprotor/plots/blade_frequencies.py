@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from proprotor.model.blade_comparison import hinged_frequencies, in_vacuum
-from proprotor.plots.canvas import grid
-from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, in_style
+from proprotor.plots import small_print
+from proprotor.plots.canvas import grid, note
+from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE, SMALL_SIZE, in_style, white_box
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.elastic_blade import ElasticBlade
 from proprotor.rotor.hinged_blade import HingedBlade
@@ -18,9 +19,10 @@ from proprotor.typing import Array, Axes, Figure
 _MODES = 4
 _SPEEDS = 25
 _HARMONICS = 5
+_NAMED = 0.93  # of the highest rotor speed: where the names of the harmonics stand
 _RPM = np.pi / 30
-_ELASTIC: dict[str, Any] = {"color": "0.2", "linewidth": 1.4}
-_HINGED: dict[str, Any] = {"color": "#c1440e", "linestyle": "--", "linewidth": 1.6}
+_ELASTIC: dict[str, Any] = {"color": COLOURS[0], "linewidth": 1.4}
+_HINGED: dict[str, Any] = {"color": COLOURS[2], "linestyle": "--", "linewidth": 1.8}
 
 
 @in_style
@@ -46,6 +48,7 @@ def plot_blade_frequencies(
     import matplotlib.pyplot as plt  # here, because matplotlib takes long to import
 
     figure, axes = plt.subplots(2, 2, figsize=(9, 7), sharey="row", layout="constrained")
+    small_print.own(figure)
     blade, rotor = ElasticBlade(stations), in_vacuum(found)
     pitch, speed = np.linspace(found.pitch.min(), found.pitch.max(), _SPEEDS), found.rotor_speed
     own = hinged_frequencies(rotor, speed, pitch)
@@ -70,6 +73,9 @@ def plot_blade_frequencies(
     axes[0, 0].legend()
     axes[0, 0].set_ylim(0, 1.05 * float(elastic.max()))
     axes[1, 0].set_ylim(0, 1.05 * float(fan.max()))
+    note(axes[0, 0], "Blades in a vacuum, in rotating axes")
+    note(axes[0, 0], f"Above at {speed / _RPM:.4g} rpm, which a line marks below")
+    note(axes[1, 0], f"Below at {np.degrees(middle):.3g}° collective")
     return figure
 
 
@@ -86,11 +92,6 @@ def _draw_harmonics(ax: Axes, speeds: Array) -> None:
     """Draw the multiples of the rotor speed."""
     for n in range(1, _HARMONICS + 1):
         ax.plot(speeds / _RPM, n * speeds / (2 * np.pi), color="0.75", linewidth=0.7, zorder=0)
-        ax.annotate(
-            f"{n}/rev",
-            (speeds[-1] / _RPM, n * speeds[-1] / (2 * np.pi)),
-            fontsize=SMALL_SIZE,
-            color="0.5",
-            ha="right",
-            annotation_clip=True,
-        )
+        end = (_NAMED * speeds[-1] / _RPM, n * _NAMED * speeds[-1] / (2 * np.pi))
+        centred: dict[str, Any] = {"ha": "center", "va": "center", "bbox": white_box(0.5), "zorder": 0.5}
+        ax.annotate(f"{n}/rev", end, fontsize=SMALL_SIZE, color=GREY, annotation_clip=True, **centred)

@@ -9,18 +9,29 @@ from numpy.typing import ArrayLike
 
 from proprotor.model.stamp import density_of
 from proprotor.plots import small_print
-from proprotor.plots.canvas import Limits, along, axes_or_new, note, say_origin, two_axes, write_title
+from proprotor.plots.canvas import (
+    Limits,
+    along,
+    axes_or_new,
+    name_unstable,
+    note,
+    say_origin,
+    two_axes,
+    write_title,
+)
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, written
-from proprotor.plots.mode_lines import draw_modes, names_of_sweeps
+from proprotor.plots.mode_lines import draw_modes, earlier_sweeps, names_of_sweeps
 from proprotor.plots.onsets import boundaries_of
 from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
-from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, UNSTABLE, in_style, white_box
+from proprotor.plots.style import SMALL_SIZE, UNSTABLE, in_style, white_box
 from proprotor.tables.points import DAMPING, Points, Quantity
 from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps
 from proprotor.typing import Array, Axes, Dataset, Figure
 
 _DAMPING = (-5.0, 20.0)  # usual ends of the axis of damping, percent of critical
+_PER_REV = (0.0, 5.0)  # usual ends of the axis of frequency
+_FILLED = 0.45  # of the usual axis: where all lines are lower, half the axis shows them larger
 _PERCENT = Quantity(DAMPING, "", 0.01)
 _ONSET = "onset"  # gid of the name of a mode beside its boundary
 _ROWS = 6  # of names of modes below the line of zero damping
@@ -51,7 +62,8 @@ def plot_frequency(
     unit : str, optional
         Unit of the axis of airspeed, "ktas" by default, or of the input.
     limits : (float, float), optional
-        Ends of the frequency axis, in its unit; 0 to 5 per revolution by default. A note beneath the axes names the
+        Ends of the frequency axis, in its unit; by default 0 to 5 per revolution, or to half of that where all lines
+        are lower. A note beneath the axes names the
         modes of which no point lies within.
     points : Points, optional
         Of `proprotor.tables.points.read_points`, drawn beside the lines: columns airspeed, or the input, and frequency.
@@ -78,8 +90,8 @@ def plot_frequency(
 def _draw_frequency(ax: Axes, sweep: Dataset, line: Positions, of: _Asked) -> None:
     per = 2 * np.pi if of.rotor_speed is None else np.asarray(of.rotor_speed)[..., None]
     values = damped_frequency(sweep) / per
-    limits = of.limits or (0, None if of.rotor_speed is None else 5)
-    _draw(ax, sweep, values, line, limits, of, frequency_quantity(line, of.rotor_speed), "frequency")
+    usual = (0, None) if of.rotor_speed is None else _PER_REV
+    _draw(ax, sweep, values, line, usual, of, frequency_quantity(line, of.rotor_speed), "frequency")
     onsets = [one for one in boundaries_of(sweep, values) if one.onset]
     _draw_circles(ax, [one.place / line.factor for one in onsets], [one.value for one in onsets])
     ax.set_ylabel(f"Frequency |Im s| ({'Hz' if of.rotor_speed is None else 'per rev'})")
@@ -91,7 +103,7 @@ def plot_damping(
     ax: Axes | None = None,
     *,
     unit: str | None = None,
-    limits: tuple[float, float] = _DAMPING,
+    limits: tuple[float, float] | None = None,
     points: Points | None = None,
     name: str = "",
 ) -> Axes:
@@ -108,8 +120,9 @@ def plot_damping(
         Where to draw; a new figure by default. Labels stand to its right.
     unit : str, optional
         Unit of the axis of airspeed, "ktas" by default, or of the input.
-    limits : (float, float)
-        Ends of the damping axis, in percent. A note beneath the axes names the modes of which no point lies within.
+    limits : (float, float), optional
+        Ends of the damping axis, in percent; by default -5 to 20, or to 10 where all lines are lower. A note beneath
+        the axes names the modes of which no point lies within.
     points : Points, optional
         Of `proprotor.tables.points.read_points`, drawn beside the lines: columns airspeed, or the input, and damping.
     name : str
@@ -133,8 +146,7 @@ def plot_damping(
 
 
 def _draw_damping(ax: Axes, sweep: Dataset, line: Positions, of: _Asked) -> None:
-    limits = of.limits or _DAMPING
-    _draw(ax, sweep, damping_percent(sweep), line, limits, of, _PERCENT, "damping")
+    _draw(ax, sweep, damping_percent(sweep), line, _DAMPING, of, _PERCENT, "damping")
     _mark_instability(ax, sweep, line)
     ax.set_ylabel("Damping −Re s/|s| (% of critical)")
 
@@ -145,7 +157,7 @@ def plot_sweep(
     *,
     rotor_speed: ArrayLike | None = None,
     unit: str | None = None,
-    damping_limits: tuple[float, float] = _DAMPING,
+    damping_limits: tuple[float, float] | None = None,
     title: str = "",
     footer: str = "",
     points: Points | None = None,
@@ -160,7 +172,7 @@ def plot_sweep(
         rad/s, as for `plot_frequency`.
     unit : str, optional
         Unit of the axis across, as for `plot_frequency`.
-    damping_limits : (float, float)
+    damping_limits : (float, float), optional
         Ends of the damping axis, percent of critical.
     title, footer : str
         Texts above and below the plots. The footer is the place for reservations about the numbers.
@@ -210,17 +222,27 @@ def _draw(
     sweep: Dataset,
     values: Array,
     line: Positions,
-    limits: tuple[float, float | None],
+    usual: tuple[float, float | None],
     of: _Asked,
     up: Quantity,
     quantity: str,
 ) -> None:
-    """Draw values (points, modes) of the modes within limits, points of a file, and the names of the lines."""
+    """Draw values (points, modes) of the modes, points of a file, and the names of the lines.
+
+    The axis has the limits that were asked for, or the usual ones.
+    """
     lines = draw_modes(ax, sweep, values, line, of.name)
     ax.margins(x=0)
-    ax.set_ylim(*limits)
+    ax.set_ylim(*(of.limits or (usual[0], _top(ax, usual[1]))))
     draw_points(ax, of.points, _across(sweep, line), up, needed=of.needed)
     label_lines(ax, lines, quantity)
+
+
+def _top(ax: Axes, usual: float | None) -> float | None:
+    """Return the upper end of an axis: the usual one, or half of it where all lines of modes are lower than that."""
+    lines = (line for one in earlier_sweeps(ax) for line in one.lines.values())
+    highest = max((float(np.nanmax(line.get_ydata(), initial=-np.inf)) for line in lines), default=np.inf)
+    return usual / 2 if usual and highest < _FILLED * usual else usual
 
 
 def _first_onset(sweep: Dataset, line: Positions, rotor_speed: ArrayLike | None) -> str:
@@ -245,7 +267,7 @@ def _mark_instability(ax: Axes, sweep: Dataset, line: Positions) -> None:
     if found:
         note(ax, "Circles: boundaries, interpolated between points of the sweep")
     if not any(text.get_text() == "unstable" for text in ax.texts):
-        ax.text(0.01, 0.015, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+        name_unstable(ax)
 
 
 def _name_onsets(ax: Axes, onsets: list[Any], line: Positions) -> None:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
-from proprotor.plots.style import COLOURS, in_style
+from proprotor.plots.style import in_style, line_style
 from proprotor.stability import places_of
 from proprotor.typing import Axes, Dataset
 from proprotor.units import KNOT, KTAS
 
-_DASHES = ("-", "--", "-.", ":")
 _USUAL = ("force_x", "force_z", "moment_x", "moment_y")
 
 
@@ -57,11 +55,8 @@ def plot_gust_spectra(
         own = found.isel(output=column)
         rms, unit = float(own.rms), str(own.output_unit.item())
         density = own.psd.values / rms**2 * 2 * np.pi if rms > 0 else np.full(len(hertz), np.nan)
-        style: dict[str, Any] = {
-            "color": COLOURS[place % len(COLOURS)],
-            "linestyle": _DASHES[place % len(_DASHES)],
-        }
-        ax.plot(hertz, density, label=f"{known[column]}, rms {rms:.3g} {unit}", linewidth=1.6, **style)
+        style = line_style(place) | {"marker": "", "linewidth": 1.6}
+        ax.plot(hertz, density, label=f"{known[column]}, rms {rms:.3g} {unit}", **style)
     ax.set(
         xscale="log", yscale="log", xlabel="Frequency (Hz)", ylabel="Spectral density over variance (1/Hz)"
     )

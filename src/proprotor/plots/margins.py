@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from proprotor.model.doubts import doubts_along, footnotes
@@ -12,12 +10,12 @@ from proprotor.plots import small_print
 from proprotor.plots.canvas import grid, note, say_origin, two_axes, write_title
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, axis_of, written
-from proprotor.plots.style import COLOURS, LABEL_SIZE, UNSTABLE, in_style
+from proprotor.plots.mode_lines import mark_failed
+from proprotor.plots.style import LABEL_SIZE, UNSTABLE, in_style, line_style
 from proprotor.stability.margin_ranges import Needed, decibels
 from proprotor.typing import Array, Axes, Dataset, Figure
 
 _TOPS = (30.0, 180.0)  # of the axes, dB and degrees: more is as good as no limit
-_MARKERS = "os^DvP"
 
 
 @in_style
@@ -70,7 +68,7 @@ def plot_margins(
     )
     above.set_ylabel("Gain margin, either way (dB)")
     below.set_ylabel("Phase margin (deg)")
-    below.set_xlabel(line.label)
+    above.set_xlabel("")
     small_print.add(below, footer)
     say_origin(below, margins.attrs, _doubts(margins, line))
     return figure
@@ -89,12 +87,7 @@ def _draw(
     shown = np.where(np.isnan(values), np.nan, np.minimum(values, top))
     lines = []
     for place, loop in enumerate(margins.loop.values.tolist()):
-        style: dict[str, Any] = {
-            "color": COLOURS[place % len(COLOURS)],
-            "marker": _MARKERS[place % len(_MARKERS)],
-            "markersize": 4,
-            "linewidth": 2.0,
-        }
+        style = line_style(place) | {"markersize": 4, "linewidth": 2.0}
         if np.isfinite(shown[:, place]).any():
             lines += ax.plot(line.values, shown[:, place], label=str(loop), **style)
     ax.axhline(needed, color="black", linewidth=0.9, linestyle="--", zorder=1)
@@ -108,7 +101,9 @@ def _draw(
     )
     ax.margins(x=0.01)
     ax.set_ylim(0, top * 1.02)
-    _mark_instability(ax, line, margins.stable.values)
+    failed = margins.reason.values != ""
+    _mark_instability(ax, line, margins.stable.values | failed)
+    mark_failed(ax, line, failed, first=True)
     grid(ax)
     if (values > top).any():
         note(ax, f"At {top:g} {unit}: that much or more, or no limit")
@@ -124,7 +119,7 @@ def _mark_instability(ax: Axes, line: Positions, stable: Array) -> None:
         ax.text(
             0.99,
             0.03,
-            "shaded: unstable or not known",
+            "shaded: unstable",
             fontsize=LABEL_SIZE,
             ha="right",
             transform=ax.transAxes,

@@ -47,7 +47,7 @@ def draw_modes(ax: Axes, sweep: Dataset, values: Array, line: Positions, name: s
         markers |= {"markerfacecolor": "white"} if earlier else {}
         x, y = with_gaps(gaps[:, place], line.values, values[:, place])
         (lines[mode],) = ax.plot(x, y, label=mode, **markers, **style._asdict())
-    _mark_failed(ax, line, sweep.reason.values != "", first=not earlier)
+    mark_failed(ax, line, sweep.reason.values != "", first=not earlier)
     grid(ax)
     return named(ax, sweep, lines, name)
 
@@ -116,9 +116,11 @@ def _names(kept: list[_Drawn]) -> list[str]:
     return [one.name or own for one, own in zip(kept, usual, strict=True)]
 
 
-def _mark_failed(ax: Axes, line: Positions, failed: Array, *, first: bool) -> None:
+def mark_failed(ax: Axes, line: Positions, failed: Array, *, first: bool) -> None:
     """Draw a cross on the axis at each failed point and, of the first sweep, hatch the stretches of such points."""
     ax.set_xlabel(line.label + (", x where it could not be analysed" if failed.any() else ""))
+    if not failed.any():
+        return  # a line without points, not clipped, would take the corner of the figure into the layout
     on_the_axis: dict[str, Any] = {"transform": ax.get_xaxis_transform(), "clip_on": False}
     at = line.values[failed]
     ax.plot(at, np.zeros(len(at)), "x", color="0.4", **on_the_axis)

@@ -10,6 +10,7 @@ import textwrap
 from typing import Any
 
 from proprotor.errors import printable
+from proprotor.model.doubts import MARK
 from proprotor.plots.style import GREY, SMALL_SIZE
 from proprotor.typing import Axes, Figure
 
@@ -53,12 +54,17 @@ def read(ax: Axes) -> str:
     return next((str(text.get_label()) for text in texts if text.get_gid() == _BLOCK), "")
 
 
+def _lines(text: str, letters: int) -> list[str]:
+    """Return the lines of a text; the mark of a doubt stays with the first word of the doubt."""
+    return textwrap.wrap(text.replace(f"{MARK} ", f"{MARK}\N{NO-BREAK SPACE}"), letters)
+
+
 def _write_below(ax: Axes, figure: Figure, text: str) -> None:
     """Write the block below given axes, as broad as these are."""
     for old in [old for old in ax.texts if old.get_gid() == _BLOCK]:
         old.remove()
     inches = ax.get_position().width * figure.get_size_inches()[0]
-    lines = textwrap.wrap(text, max(30, int(_LETTERS_PER_INCH * inches)))
+    lines = _lines(text, max(30, int(_LETTERS_PER_INCH * inches)))
     place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "top"}
     block = ax.annotate(
         "\n".join(lines), (0, 0), xytext=(0, -_BELOW), annotation_clip=False, **place, **_STYLE
@@ -90,7 +96,7 @@ def _write_at_bottom(figure: Figure, text: str) -> None:
     for old in [old for old in figure.texts if old.get_gid() == _BLOCK]:
         before = (old.get_text().count("\n") + 2) * _INCHES
         old.remove()
-    lines = textwrap.wrap(text, max(20, int(_LETTERS_PER_INCH * (width - 2 * _EDGE))))
+    lines = _lines(text, max(20, int(_LETTERS_PER_INCH * (width - 2 * _EDGE))))
     added = (len(lines) + 1) * _INCHES
     height = whole - before + added
     figure.set_size_inches(width, height)

@@ -38,6 +38,7 @@ SHEET: dict[str, Any] = {
     "ytick.labelsize": LABEL_SIZE,
 }
 _DASHES = ("-", "--", ":")
+_CASE_DASHES = ("-", "--", "-.", ":")  # of cases, gusts or variants that one picture compares
 _SYMMETRIC, _ANTISYMMETRIC = ("-", "-."), ("--", ":")  # dashes of the modes of an aircraft
 _LATER = {  # dashes of the same line of a further sweep on the same axes
     "-": (0, (6, 1.6)),
@@ -106,6 +107,15 @@ def mode_styles(sweep: Dataset) -> list[ModeStyle]:
         )
         for mode in modes
     ]
+
+
+def line_style(place: int) -> dict[str, Any]:
+    """Return colour, dashes and marker of the line of the first, second and so on case that one picture compares."""
+    return {
+        "color": COLOURS[place % len(COLOURS)],
+        "linestyle": _CASE_DASHES[place % len(_CASE_DASHES)],
+        "marker": _MARKERS[place % len(_MARKERS)],
+    }
 
 
 def of_later_sweep(style: ModeStyle, place: int) -> ModeStyle:

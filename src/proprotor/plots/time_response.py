@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from proprotor.errors import InputError
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
-from proprotor.plots.style import COLOURS, in_style
+from proprotor.plots.style import in_style, line_style
 from proprotor.stability import places_of
 from proprotor.typing import Axes, Dataset
-
-_DASHES = ("-", "--", "-.", ":")
 
 
 @in_style
@@ -53,15 +50,12 @@ def plot_time_response(
     ax = axes_or_new(ax)
     for row, gradient in enumerate(gusts):
         for place, column in enumerate(columns):
-            style: dict[str, Any] = {
-                "color": COLOURS[(row + place) % len(COLOURS)],
-                "linestyle": _DASHES[(row + place) % 4],
-            }
+            style = line_style(row + place) | {"marker": "", "linewidth": 1.4}
             of_gust = "" if gradient is None else f"H = {gradient:.3g} m"
             label = ", ".join(
                 filter(None, (known[column] if len(columns) > 1 or not of_gust else "", of_gust))
             )
-            ax.plot(found.time.values, response.values[row, :, column], label=label, linewidth=1.4, **style)
+            ax.plot(found.time.values, response.values[row, :, column], label=label, **style)
     ax.axhline(0, color="black", linewidth=0.6)
     ax.set(
         xlabel="Time (s)", ylabel=f"{', '.join(known[column] for column in columns)} ({next(iter(units))})"

@@ -24,6 +24,7 @@ from proprotor.report.document import Document, Section, Table, Text
 from proprotor.report.summary import summary, verdict
 from proprotor.stability.flutter_messages import boundary_record, boundary_row
 from proprotor.tables.amounts_table import amounts_tables
+from proprotor.tables.digits import alike
 from proprotor.tables.envelope_table import (
     COLUMNS,
     HEADING,
@@ -244,7 +245,10 @@ def _modes(table: SweepTable) -> Iterator[Table | Text]:
     if not at:
         return
     warnings = table.sweep.warning.values
-    speeds = tuple(marked(f"{table.airspeed[point]:.4g} {table.unit}", warnings[point]) for point in at)
+    texts = alike([table.airspeed[point] for point in at], 4)
+    speeds = tuple(
+        marked(f"{text} {table.unit}", warnings[point]) for text, point in zip(texts, at, strict=True)
+    )
     for caption, values, form in (
         ("Frequency |Im s| per revolution", table.frequency, ".3f"),
         ("Damping −Re s/|s|, percent of critical; * where a mode is unstable", table.damping, ".2f"),
@@ -291,23 +295,24 @@ def _trim(found: Findings, table: SweepTable) -> Iterator[Table | Text]:
     trim, degree = found.trim, math.pi / 180
     angles = (f"{name.replace('_', ' ')}, deg" for name in _ANGLES)
     columns = (f"airspeed, {table.unit}", *angles, "thrust, N", "torque, N·m", "doubt")
+    at = _some(~table.failed)
     rows = [
         (
-            marked(f"{table.airspeed[point]:.4g}", trim.warning[point]),
+            marked(speed, trim.warning[point]),
             *(f"{getattr(trim, name)[point] / degree:.3f}" for name in _ANGLES),
             f"{trim.thrust[point]:.0f}",
             f"{round(trim.torque[point]) + 0:d}",
             str(trim.warning[point]) or "–",
         )
-        for point in _some(~table.failed)
+        for point, speed in zip(at, alike([table.airspeed[point] for point in at], 4), strict=True)
     ]
+    failed = tuple(_failed(table))
     if rows:
-        yield Table("Steady state at some airspeeds", columns, tuple(rows), frozenset(columns[:-1]))
-    if failed := tuple(_failed(table)):
+        caption = f"Steady state at some airspeeds{'' if failed else '; every airspeed could be analysed'}"
+        yield Table(caption, columns, tuple(rows), frozenset(columns[:-1]))
+    if failed:
         head = ("airspeeds", "points", "reason")
         yield Table("Airspeeds that could not be analysed", head, failed, frozenset(("points",)))
-    else:
-        yield Text(("Every airspeed could be analysed.",))
 
 
 # Inputs -------------------------------------------------------------------------------------------------------------

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _DPI = 200  # of a PNG
 _UNDATED: Any = {"svg": {"Date": None}, "png": {"Software": None}}  # without date and version of matplotlib
 _SHARE = 0.75  # share of the width of a sheet, for plots of bars
+_TWO = 0.9  # and for two plots that stand on one sheet
 # Without a salt the names within an SVG are random; with math text a dollar in the name of a mode begins a formula.
 _FIXED: Any = {"svg.hashsalt": "proprotor", "text.parse_math": False}
 
@@ -60,6 +61,7 @@ def of_sweep(case: Case, found: Findings, unit: str, points: Points | None = Non
         f"Frequency of each mode over airspeed. {broad}",
         f"Line plot of the frequency, per revolution, of the modes {names}, {across}",
         _drawing(lambda: plot_frequency(found.sweep, rotor_speed=omega, unit=unit, points=of_frequency)),
+        _TWO,
     )
     yield Picture(
         "damping",
@@ -67,6 +69,7 @@ def of_sweep(case: Case, found: Findings, unit: str, points: Points | None = Non
         "Circles are interpolated between the airspeeds drawn, the boundaries of the summary are exact.",
         f"Line plot of the damping, in percent of critical, of the modes {names}, {across}",
         _drawing(lambda: plot_damping(found.sweep, unit=unit, points=of_damping)),
+        _TWO,
     )
     yield Picture(
         "root-locus",

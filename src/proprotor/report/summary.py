@@ -16,6 +16,7 @@ from proprotor.model.provenance import doubtful_inputs
 from proprotor.report.analyses import Findings
 from proprotor.report.document import Table, Text
 from proprotor.stability.flutter_messages import answer, remarks
+from proprotor.tables.digits import significant
 from proprotor.tables.envelope_table import envelope_verdict
 from proprotor.tables.sensitivity_summary import READ_IN, sensitivity_records, sensitivity_row
 
@@ -95,12 +96,12 @@ def _numbers(case: Case, found: Findings, unit: str, factor: float) -> Iterator[
     """Yield the numbers that follow from the inputs, and the rules that doubtful ones break."""
     found_amounts = {one.name: one for one in amounts(case)}
     of_rotor = {head: found_amounts[name] for name, head in _OF_ROTOR.items()}
-    cells = {head: marked(f"{one.value:.3g}", one.doubt) for head, one in of_rotor.items()}
+    cells = {head: marked(significant(one.value, 3), one.doubt) for head, one in of_rotor.items()}
     doubts = [one.doubt for one in of_rotor.values()]
     where = ""
     for blade in blade_at_trims(case, np.array([found.speed])) if found.mode else ():
         where = f"; tip Mach along the helix, ν and K_P at {found.speed / factor:.4g} {unit}"
-        cells["along the helix"] = f"{_helical_mach(case, found.speed):.3g}"
+        cells["along the helix"] = significant(_helical_mach(case, found.speed), 3)
         for head, name in _OF_BLADE.items():
             value = getattr(blade, name)
             cells[head] = "–" if math.isnan(value) else marked(f"{value:.3f}", blade.doubt)

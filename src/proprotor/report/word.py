@@ -17,6 +17,7 @@ _BLUE, _RED = "0072B2", "B34700"  # the bars beside the verdict and beside warni
 _MOST, _LONGEST = 200, 40  # characters of a cell, and of a word, that count for the width of a column
 _CHARACTER, _BESIDE = 1.6, 3  # mm of a character of a table, and characters of the space between two cells
 _SMALL, _SMALLER, _MANY = 8, 7, 9  # points of a table, and of one with many columns; how many are many
+_TOGETHER = 15  # rows of the longest table that is not split between two pages
 _TABLE = "Light Shading"  # the style of tables
 _PADDING = "20"  # above and below the text of a cell, in twentieths of a point
 _BAND = "F2F2F2"  # every other row of a table, pale enough to read small print on
@@ -60,14 +61,50 @@ def docx_of(document: Document) -> bytes:
             _barred(file, sentence, _RED)
     for part in document.summary:
         _add(file, part)
+    _add_contents(file, document)
     for number, section in enumerate(document.sections):
         heading = file.add_heading(section.title, 1)
         heading.paragraph_format.page_break_before = number == 0
+        _mark(heading, number)
         for block in section.blocks:
             _add(file, block)
     content = io.BytesIO()
     file.save(content)
     return _undated(content.getvalue())
+
+
+def _add_contents(file: Any, document: Document) -> None:
+    """List the sections with their pages. The number of a page is a field, which the text processor computes."""
+    from docx.enum.text import WD_TAB_ALIGNMENT, WD_TAB_LEADER
+    from docx.shared import Mm, Pt
+
+    if document.sections:
+        head = file.add_paragraph()
+        head.add_run("Contents").bold = True
+        head.paragraph_format.space_before, head.paragraph_format.keep_with_next = Pt(9), True
+    for number, section in enumerate(document.sections):
+        line = file.add_paragraph()
+        line.paragraph_format.space_after = Pt(0)
+        line.paragraph_format.tab_stops.add_tab_stop(Mm(_WIDTH), WD_TAB_ALIGNMENT.RIGHT, WD_TAB_LEADER.DOTS)
+        link = _element("w:hyperlink", anchor=_place(number))
+        link.append(line.add_run(f"{section.title}\t")._r)
+        line._p.append(link)
+        _add_field(line, f"PAGEREF {_place(number)}")
+
+
+def _mark(heading: Any, number: int) -> None:
+    """Give a heading a bookmark, to which the line of the contents leads."""
+    start, end = (
+        _element("w:bookmarkStart", id=str(number), name=_place(number)),
+        _element("w:bookmarkEnd", id=str(number)),
+    )
+    heading._p.get_or_add_pPr().addnext(start)
+    heading._p.append(end)
+
+
+def _place(number: int) -> str:
+    """Return the name of the bookmark of a section."""
+    return f"section_{number + 1}"
 
 
 def _set_up(file: Any, document: Document) -> None:
@@ -167,6 +204,7 @@ def _add_table(file: Any, block: Table) -> None:
             cell.width = width
             paragraph = cell.paragraphs[0]
             paragraph.paragraph_format.space_after = Pt(0)
+            paragraph.paragraph_format.keep_with_next = place < len(block.rows) <= _TOGETHER
             run = paragraph.add_run(text.replace(" %", "\N{NO-BREAK SPACE}%"))
             run.font.size, run.bold = size, place == 0
             if column in block.numbers:
@@ -218,7 +256,7 @@ def _add_field(paragraph: Any, name: str) -> None:
     paragraph._p.append(field)
 
 
-def _element(name: str, **attributes: str) -> Any:
+def _element(name: str, /, **attributes: str) -> Any:
     """Return an element of WordprocessingML with its attributes."""
     from docx.oxml import OxmlElement
     from docx.oxml.ns import qn

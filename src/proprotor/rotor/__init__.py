@@ -72,7 +72,7 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
-from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
+from proprotor.rotor.in_flight import find_in_flight, rotors_of, serves_in_flight
 from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
@@ -117,6 +117,7 @@ __all__ = [
     "moving_blade",
     "options",
     "periodic_trim",
+    "rotors_of",
     "section_loads",
     "serves_in_flight",
     "smooth_table",

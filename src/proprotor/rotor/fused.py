@@ -128,6 +128,28 @@ def rotor_matrices(
     return _one_point(plans, blade, along) if one else _batch(plans, blade, along, points)
 
 
+def mass_at_trim(quantities: Quantities, places: Sequence[int]) -> Array:
+    """Return rows and columns of M (..., k, k) of a rotor without engine: the mass matrix of some coordinates.
+
+    Parameters
+    ----------
+    quantities : mapping
+        Numbers or arrays (...) of the rotor and its trim, with the integrals that follow from it. What M does not
+        depend on, such as springs, may be missing.
+    places : sequence of int
+        Places of the coordinates.
+    """
+    plans = plans_of(quantities)
+    given = dict.fromkeys(_names(plans, False), 0.0) | dict(quantities)
+    layout = _layout(plans, "in_vacuum")
+    values = values_of(evaluate(plans.in_vacuum, given, np.cos, np.sin), layout)
+    wanted = layout.places["M"][np.ix_(places, places)]
+    different, order = np.unique(wanted, return_inverse=True)
+    return np.stack(np.broadcast_arrays(*(values[place] for place in different)), axis=-1)[
+        ..., order.reshape(wanted.shape)
+    ]
+
+
 @cache
 def shapes_of(plans: ModuleType) -> Mapping[str, tuple[int, int]]:
     """Return rows and columns of M, C, K and B."""

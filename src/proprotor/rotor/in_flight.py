@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.compiled.plans import Limits, rotors_in_flight
+from proprotor.compiled.in_flight import Limits, Rotors
 from proprotor.rotor.airfoil import LINEAR_ALPHA, LINEAR_MACH
 from proprotor.rotor.fused import serves, shapes_of
 from proprotor.rotor.section_loads import BladeSections
@@ -41,8 +41,8 @@ def serves_in_flight(balance: Balance, few: BladeSections) -> bool:
     return bool(usual and not apart and balance.free and few is balance.sections and serves_search(balance))
 
 
-def find_in_flight(balance: Balance) -> _InFlight:
-    """Return trim and matrices of all points of a balance that has no reservations."""
+def rotors_of(balance: Balance) -> Rotors:
+    """Return the rotors of a balance as the call takes them: those of many designs, or of one at any airspeed."""
     plans, finds_collective = balance.plans, balance.target.finds_collective
     limits = Limits(
         angle=LARGEST_ANGLE,
@@ -56,16 +56,31 @@ def find_in_flight(balance: Balance) -> _InFlight:
         sprung=tuple(balance.sprung.tolist()),
     )
     stages = stage(balance, _MOST, come_near=True), stage(balance, _MOST, come_near=False)
-    found = rotors_in_flight(plans, balance.points, blades_of(balance), stages, limits, shapes_of(plans))
-    none = np.full(balance.points, "", dtype=object)
+    return Rotors(plans, blades_of(balance), stages, limits, shapes_of(plans))
+
+
+def find_in_flight(rotors: Rotors, points: int, airspeed: Array | None = None) -> _InFlight:
+    """Return trim and matrices of points that have no reservations.
+
+    Parameters
+    ----------
+    rotors : Rotors
+        See `rotors_of`.
+    points : int
+    airspeed : array (points,), optional
+        m/s, for rotors of one design.
+    """
+    found = rotors.in_flight(points, airspeed)
+    none = np.full(points, "", dtype=object)
+    state = dict(zip(UNKNOWNS, found.state, strict=True))
     trim = Trim(
-        **dict(zip(UNKNOWNS, found.state, strict=True)),
+        **state,
         thrust=found.thrust,
         torque=found.torque,
         converged=found.served.copy(),
         reason=none,
         warning=none.copy(),
         iterations=found.iterations,
-        inflow=np.zeros(balance.points),
+        inflow=np.zeros(points),
     )
     return _InFlight(found.served, trim, found.matrices)

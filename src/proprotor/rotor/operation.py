@@ -55,6 +55,7 @@ class Operation:
         (name, value), *_ = self.trim.items()
         check_known("trim", name, _TRIM_TARGETS, "trim")
         check_finite(f"trim.{name}", value)
+        object.__setattr__(self, "trim", dict(self.trim))  # a copy, which nobody else writes to
 
     @property
     def windmilling(self) -> bool:

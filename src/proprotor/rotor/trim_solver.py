@@ -22,9 +22,10 @@ import numpy as np
 from proprotor.compiled.plans import Searched
 from proprotor.rotor import trim_compiled
 from proprotor.rotor.fused_balance import segments_of
+from proprotor.rotor.in_flight import find_in_flight, rotors_of, serves_in_flight
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections, mark_doubts
-from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim, has_offset_mass
+from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim, has_offset_mass, take
 from proprotor.rotor.trim_balance import (
     Balance,
     Linear,
@@ -403,7 +404,7 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
     real = {name: np.real(value) for name, value in balance.quantities.items()}
     sections = balance.sections.real
     few = sections if few is balance.sections else few.real
-    trim = solve_trim(sections, few, real, balance.options, real_target, points).trim
+    trim = _real_trim(balance_of(sections, real, balance.options, real_target, points), few)
     state = {name: getattr(trim, name).astype(complex) for name in UNKNOWNS}
     if target.collective is not None:
         state["collective"] = state["collective"] + 1j * np.imag(target.collective)
@@ -412,6 +413,28 @@ def _complex_trim(balance: Balance, few: BladeSections, points: int) -> Settled:
         step, _ = _newton(balance, state, rows)
         balance.take_step(state, rows, step)
     return _settle(balance, state, state, trim.reason, trim.iterations)
+
+
+def _real_trim(balance: Balance, few: BladeSections) -> Trim:
+    """Return the trim of all points of real quantities, in one compiled call as far as this is served."""
+    sections, options, points = balance.sections, balance.options, balance.points
+    if not serves_in_flight(balance, few):
+        return solve_trim(sections, few, balance.quantities, options, balance.target, points).trim
+    found = find_in_flight(rotors_of(balance), points)
+    left = np.flatnonzero(~found.served)
+    if len(left):
+        target = {"collective": balance.target.collective, "load": balance.target.load}
+        own = solve_trim(
+            sections := sections.take(left),
+            sections,
+            take(balance.quantities, left),
+            options,
+            replace(balance.target, **take(target, left)),
+            len(left),
+        )
+        for name, values in vars(own.trim).items():
+            getattr(found.trim, name)[left] = values
+    return found.trim
 
 
 def _free_unknowns(options: Options, finds_collective: bool) -> list[int]:

@@ -21,6 +21,7 @@ _ITERATIONS = 60  # of Newton's method; with bisection as the last resort
 _CLOSE = 1e-9  # of the position: the last correction, after which the next is rounding
 _JUMP = 1e-6  # of a root and of 1 rad/s: growth that is left where a bracket has collapsed upon a jump
 _SURE = 4.0  # errors of the growth that a slope must make over a bracket to count
+_CAUTION = 16.0  # times the next correction that the change of the slope over a bracket lets expect
 
 
 class Crossing(NamedTuple):
@@ -51,7 +52,8 @@ class Brackets:
     ----------
     search : Search
     close : float, optional
-        The last correction of a position, in the unit of the position; a billionth of the position by default.
+        The error that a position may have, in its unit; by default the last correction is a billionth of the position,
+        and the error is rounding.
     """
 
     def __init__(self, search: Search, close: float | None = None) -> None:
@@ -64,8 +66,10 @@ class Brackets:
         self.count, self.line = len(rows), points.line[self.start]
         last, to_state = steps.after[rows], steps.successor[rows, states]
         self.x = np.stack([points.position[self.start], points.position[last]])
+        self.step = self.x.copy()
         self.scale = np.abs(self.x).max(axis=0, initial=0)
         self.near = np.full(self.count, close) if close else _CLOSE * self.scale
+        self.allowed = close or 0.0
         self.cubic = ends
         self.onset = ends[1] > ends[0]
         self.place = np.stack([states, to_state])
@@ -98,7 +102,11 @@ class Brackets:
             width = np.abs(self.x[1, active] - self.x[0, active])
             # Growth within its error is as good as zero, if the slope over the bracket is larger than the error.
             done = (np.abs(value) <= error) & (np.abs(slope) * width > _SURE * error)
-            done |= (np.abs(correction) <= self.near[active]) & (np.abs(value) > error)
+            last = np.abs(correction) <= self.near[active]
+            last |= (
+                _CAUTION * self._next_correction(active, points.position, slope, correction) <= self.allowed
+            )
+            done |= last & (np.abs(value) > error)
             collapsed = ~done & (width <= 4e-16 * self.scale[active])
             size = np.abs(points.spectrum.values[rows, place])
             jumps = collapsed & (np.abs(value) > np.fmax(error, _JUMP * (1 + size)))
@@ -113,6 +121,16 @@ class Brackets:
             guess[active] = np.where(inside, newton, (low + high) / 2)
             active = active[~done]
         return list(self.found.values())
+
+    def _next_correction(self, active: Array, position: Array, slope: Array, correction: Array) -> Array:
+        """Return the size of the correction that would follow, from how the slope changes to the ends of the step.
+
+        Newton's method leaves the square of a correction times G'' / 2G'.
+        """
+        length = self.step[1, active] - self.step[0, active]
+        with np.errstate(all="ignore"):
+            change = np.abs(slope - self.cubic[2:, active] / length) / np.abs(position - self.step[:, active])
+            return np.asarray(correction**2 * change.max(axis=0) / (2 * np.abs(slope)))
 
     def _keep(self, crossing: int, points: Points, row: int, place: int, correction: float) -> None:
         """Record the crossing at a trial point, with a last correction if this stays within the bracket."""

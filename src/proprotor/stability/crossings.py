@@ -15,24 +15,19 @@ and counts as not beyond the level; a root that is neutral all along crosses not
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from proprotor.stability.matching import match_modes
 from proprotor.stability.parting import where_to_part
-from proprotor.stability.points import Models, Points, Solved, growth_rate, solve_points
+from proprotor.stability.points import Models, Solved, solve_points
 from proprotor.stability.points_ahead import PointsAhead
-from proprotor.stability.root_pairs import MANY, along_scan
-from proprotor.stability.screening import steps_by_values
-from proprotor.stability.steps import Steps, first_steps, parted
+from proprotor.stability.screening import screened
+from proprotor.stability.steps import first_steps, parted
 from proprotor.typing import Array
 
 _ROUNDS = 20  # of parting
 _MOST_SOLVES = 1000  # of a line, after which no more of its steps are parted
 _HALVINGS = 6  # of a step at whose other end nothing can be analysed
-_TRUST = 0.5  # in cubics whose slopes are differences
-_LINES_AT_ONCE = 32  # whose steps stay in the cache while they are looked at
 
 
 class Search:
@@ -85,40 +80,42 @@ class Search:
             same = np.diff(self.points.line[order]) == 0
             before, after = order[:-1][same], order[1:][same]
             if onset_only:
-                spectrum = self.points.spectrum
-                self.steps = steps_by_values(spectrum.values, spectrum.block, before, after)
-                self._screen()
-            else:
-                self.steps = first_steps(before, after, *match_modes(self.points.spectrum, before, after))
+                before, after = self._screen(before, after)
+            self.steps = first_steps(before, after, *match_modes(self.points.spectrum, before, after))
             self._settle()
 
     def solve(self, line: Array, position: Array, plain: bool = False) -> Solved:
         """Solve further points of the lines (k,), see `proprotor.stability.points.solve_points`."""
         return solve_points(self._models, line, position, self.level, self._forgiving, self._states, plain)
 
-    def _screen(self) -> None:
-        """Keep the steps that may hold the lowest onset, and solve their ends with vectors and derivatives.
+    def _screen(self, before: Array, after: Array) -> tuple[Array, Array]:
+        """Solve the ends of the steps that may hold the lowest onset with vectors, and return these steps.
 
-        Differences from point to point stand for derivatives; cubics by differences are trusted half as much.
+        Parameters
+        ----------
+        before, after : array (steps,) of int
+            All steps of the points, which have eigenvalues alone.
+
+        Returns
+        -------
+        two arrays (steps,) of int
+            The steps, between points that have vectors and derivatives.
         """
-        points, steps = _with_differences(self.points, self.steps, self.level), self.steps
-        asked = np.isfinite(_where_by_differences(steps, points, self.level))
-        asked[steps.crossing(points)[0]] = True
-        few = np.bincount(points.line) < MANY  # points of a line, for differences to be of use
-        asked |= few[points.line[steps.before]]
-        kept = steps.at(np.flatnonzero(asked & self._before_onset()))
-        ends = np.unique(np.concatenate([kept.before, kept.after]))
+        points = self.points
+        asked, onsets = screened(points, before, after, self.level, self.scanned.is_compiled)
+        kept = asked & self._not_beyond(before, onsets)
+        linked = np.stack([before[kept], after[kept]])
+        ends = np.unique(linked)
         exact = self.solve(points.line[ends], points.position[ends]) if len(ends) else None
         if exact is None or exact.points is None:
-            self.steps = kept.at(np.array([], dtype=int))
-            return
+            none = np.array([], dtype=int)
+            return none, none
         np.add.at(self.solves, exact.points.line, 1)
         place = np.full(len(points.position), -1)
         place[ends[exact.works]] = np.arange(len(exact.points.position))
-        linked = place[np.stack([kept.before, kept.after])]
-        before, after = linked[:, (linked >= 0).all(axis=0)]
-        self.points = exact.points
-        self.steps = first_steps(before, after, *match_modes(exact.points.spectrum, before, after))
+        self.points, linked = exact.points, place[linked]
+        first, last = linked[:, (linked >= 0).all(axis=0)]
+        return first, last
 
     def _reach_edges(self, line: Array, position: Array) -> None:
         """Halve the steps from a point that works to a point that fails: a boundary may lie within such a step."""
@@ -153,13 +150,15 @@ class Search:
 
     def _before_onset(self) -> Array:
         """Return which steps do not lie beyond a step of their line over which a root becomes unstable for certain."""
-        start = self.points.position[self.steps.before]
         if not self.onset_only:
-            return np.ones(len(start), dtype=bool)
-        line = self.points.line[self.steps.before]
+            return np.ones(len(self.steps.before), dtype=bool)
+        return self._not_beyond(self.steps.before, self.steps.onsets(self.points))
+
+    def _not_beyond(self, before: Array, onsets: Array) -> Array:
+        """Return which steps, by the points before them, do not lie beyond the first of some steps of their line."""
+        start, line = self.points.position[before], self.points.line[before]
         first = np.full(len(self.solves), np.inf)
-        certain = self.steps.onsets(self.points)
-        np.minimum.at(first, line[certain], start[certain])
+        np.minimum.at(first, line[onsets], start[onsets])
         return np.asarray(start <= first[line])
 
     def _part(self, chosen: Array, share: Array) -> bool:
@@ -174,28 +173,3 @@ class Search:
         np.add.at(self.solves, line[works], 1)
         self.steps = parted(self.steps, chosen[works], self.points, first)
         return True
-
-
-def _where_by_differences(steps: Steps, points: Points, level: float) -> Array:
-    """Return where first steps are to be parted (steps,), by points with differences, some lines at a time."""
-    share = np.full(len(steps.before), np.nan)
-    begins = np.flatnonzero(np.diff(points.line[steps.before], prepend=-1))[::_LINES_AT_ONCE]
-    for ends in pairwise([*begins, len(share)]):
-        some = slice(*ends)
-        share[some] = where_to_part(steps.at(some), points, False, level, _TRUST, along_scan)
-    return share
-
-
-def _with_differences(points: Points, steps: Steps, level: float) -> Points:
-    """Return the points with differences to their neighbours in place of derivatives."""
-    values = points.spectrum.values
-    length = steps.length(points)
-    rate = (steps.later(values) - values[steps.before]) / length
-    there = np.take_along_axis(rate, steps.successor.argsort(axis=1), 1)
-    sums, weights = np.zeros(values.shape, dtype=complex), np.zeros((len(values), 1))
-    # A point is the start of one step at most, and the end of one; the nearer neighbour counts more.
-    for place, part in ((steps.before, rate), (steps.after, there)):
-        sums[place] += part / length
-        weights[place] += 1 / length
-    change = sums / np.where(weights > 0, weights, 1)
-    return points._replace(change=change, slope=growth_rate(values, change, level))

@@ -69,7 +69,7 @@ class Solved(NamedTuple):
 
     points : the points that work, None if no point does; works (k,) : which of all points these are; reason (k,) : why
     a point failed; warning (k,) : what makes a point doubtful; missing (k,) : why a point has fewer eigenvalues than
-    others.
+    others; is_compiled : whether compiled functions took the points.
     """
 
     points: Points | None
@@ -77,6 +77,7 @@ class Solved(NamedTuple):
     reason: Array
     warning: Array
     missing: Array
+    is_compiled: bool = False
 
 
 def solve_points(
@@ -143,9 +144,10 @@ def _parts(line: Array, count: int) -> list[Array]:
 
 def _together(parts: list[Solved]) -> Solved:
     """Return the points of some results as one."""
-    texts = (np.concatenate(own) for own in zip(*(part[1:] for part in parts), strict=True))
+    texts = (np.concatenate(own) for own in zip(*(part[1:5] for part in parts), strict=True))
     found = [part.points for part in parts if part.points is not None]
-    return Solved(found[0].joined(*found[1:]) if found else None, *texts)
+    points = found[0].joined(*found[1:]) if found else None
+    return Solved(points, *texts, is_compiled=any(part.is_compiled for part in parts))
 
 
 def _solved(
@@ -187,7 +189,7 @@ def _values_alone(
     spectrum = Spectrum(values, none, held=tuple(held), blocks=blocks(model, held))
     unknown = np.full(values.shape, complex(np.nan))
     points = _points(line[works], position[works], spectrum, unknown, error, level)
-    return Solved(points, works, *_texts(model, states))
+    return Solved(points, works, *_texts(model, states), model.is_compiled)
 
 
 def _with_room(values: Array, model: LinearModel, states: int) -> Array:

@@ -95,7 +95,8 @@ class NormalModes:
             matrix = _finite(field, getattr(self, field), (n, n))
             turned = np.swapaxes(matrix, -1, -2)
             rounding = 1e-12 * np.abs(matrix).max(axis=(-2, -1), keepdims=True, initial=0)
-            if field in self.symmetric and not np.allclose(matrix, turned, rtol=1e-9, atol=rounding):
+            differs = field in self.symmetric and not np.array_equal(matrix, turned)
+            if differs and not np.allclose(matrix, turned, rtol=1e-9, atol=rounding):
                 raise InputError(field, matrix.tolist(), "must be symmetric")
             object.__setattr__(self, field, matrix)
         if not nowhere_negative(np.real(self.mass)):

@@ -21,6 +21,7 @@ amounts_table         what the inputs of a case amount to, as lines for a termin
 record_table          modes that were identified in a record, as rows of points
 calibration_table     calibrated inputs and the test points, as records
 response_table        responses to gusts, as records
+digits                numbers with the same count of digits in each row
 points                points of a CSV file, to stand on plots beside results
 ====================  =========================================================================
 
@@ -33,6 +34,7 @@ __all__ = [
     "boundary_table",
     "calibration_table",
     "csv_text",
+    "digits",
     "envelope_table",
     "margin_table",
     "percentiles",

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from proprotor.model.amounts import BladeAtTrim, SupportMode, amounts, blade_at_trims, support_modes
 from proprotor.model.configuration import Configuration
 from proprotor.model.doubts import MARK, marked
+from proprotor.tables.digits import significant
 from proprotor.units import KNOT
 
 _BLADE = (
@@ -82,9 +83,11 @@ def _trim_row(blade: BladeAtTrim, *, cyclic: bool) -> tuple[str, ...]:
     if cyclic:
         pairs += [blade.cyclic_pitch_flap_coupling, blade.cyclic_pitch_lag_coupling]
     couplings = ("–" if math.isnan(k) else f"{k:.4f}" for k in pairs)
-    return (marked(f"{blade.airspeed / KNOT:.4g}", blade.doubt), *degrees, *frequencies, *couplings)
+    return (marked(significant(blade.airspeed / KNOT, 4), blade.doubt), *degrees, *frequencies, *couplings)
 
 
 def _mode_row(mode: SupportMode, omega: float) -> tuple[str, ...]:
-    pairs = ((f"{f:.4g}", f"{2 * math.pi * f / omega:.4g}") for f in (mode.alone, mode.with_rotor))
+    pairs = (
+        (significant(f, 4), significant(2 * math.pi * f / omega, 4)) for f in (mode.alone, mode.with_rotor)
+    )
     return (marked(mode.name, mode.doubt), *(text for pair in pairs for text in pair))
