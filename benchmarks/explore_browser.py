@@ -70,8 +70,13 @@ def moved(driver: Any, moves: int, seed: int) -> tuple[list[float], list[float]]
 def heap(driver: Any) -> float:
     """MB that the scripts of the page hold."""
     driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
+    return metric(driver, "JSHeapUsedSize") / 1e6
+
+
+def metric(driver: Any, name: str) -> float:
+    """A number that the browser keeps about its page."""
     metrics = driver.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
-    return next(one["value"] for one in metrics if one["name"] == "JSHeapUsedSize") / 1e6
+    return float(next(one["value"] for one in metrics if one["name"] == name))
 
 
 def opened(address: str) -> webdriver.Chrome:
@@ -129,6 +134,7 @@ def main() -> None:
         curves: list[float] = []
         maps: list[float] = []
         start, started = spent_by(server), sum(map(spent_by, browsers))
+        styles = metric(drivers[0], "RecalcStyleCount")
         step = max(1, min(500, chosen.moves // 4))
         for done in range(0, chosen.moves + 1, step):
             print(f"{done:>8}{heap(drivers[0]):>10.1f}{server.memory_info().rss / 1e6:>12.1f}", flush=True)
@@ -144,6 +150,8 @@ def main() -> None:
             f"ms of the processor for each move, map included: server {1e3 * server_s / len(curves):.0f}, "
             f"browser {1e3 * browser_s / len(curves):.0f}"
         )
+        computed = (metric(drivers[0], "RecalcStyleCount") - styles) * len(drivers) / len(curves)
+        print(f"styles computed {computed:.1f} times for each move")
         for driver in drivers:
             driver.quit()
 

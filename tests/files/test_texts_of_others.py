@@ -86,7 +86,7 @@ OPENED = {
     "nastran/op4.py": "a binary file",
     "commands/main.py": "the null device",
     "commands/explore.py": "a browser",
-    "explore/text.py": "scripts of this package",
+    "explore/post.py": "scripts of this package",
 }
 
 

@@ -13,16 +13,17 @@ In come a case and the settings of a reader; out go curves and sentences on the 
     live_map        the stability map with its controls, computed in parts
     save_panel      the buttons that save files
     words           what the page says
-    text            how the page shows what it says
+    post            what changes with each move, sent as one message
     altered_deck    the settings of the page as a deck of its own
     saves           numbers and pictures to keep
     page            the page, put together
     server          a server of the page for this machine alone
     notebook        the page in a notebook
 
-`download.js`, `names.js` and `text.js` run in the browser: they save a file, name sliders and plots for screen readers,
-and show a text. This room may import the rooms above it, from `errors` to `plots`. What is in Bokeh, `page` and
-`server` need an extra that takes long to import; import them when the page is wanted.
+`download.js`, `names.js`, `post.js` and `quick.js` run in the browser: they save a file, name sliders and plots for
+screen readers, show what a post brings, and spare Bokeh what it does at each paint for nothing. This room may import
+the rooms above it, from `errors` to `plots`. What is in Bokeh, `page` and `server` need an extra that takes long to
+import; import them when the page is wanted.
 """
 
 __all__ = ["analysis", "explore", "page", "server"]

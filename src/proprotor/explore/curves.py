@@ -49,11 +49,12 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     }
 
 
-def ends(columns: dict[str, list[Any]]) -> dict[str, list[Any]]:
+def ends(columns: dict[str, list[Any]]) -> dict[str, Any]:
     """Return the end of each root locus, at the highest airspeed that could be analysed: a marker for the reader."""
-    growth, frequency = [], []
-    for real, imaginary in zip(columns["growth"], columns["frequency"], strict=True):
-        works = np.flatnonzero(np.isfinite(real))
-        growth.append(float(real[works[-1]]) if len(works) else np.nan)
-        frequency.append(float(imaginary[works[-1]]) if len(works) else np.nan)
+    at_end = np.full((2, len(columns["mode"])), np.nan, np.float32)
+    for place, line in enumerate(zip(columns["growth"], columns["frequency"], strict=True)):
+        works = np.flatnonzero(np.isfinite(line[0]))
+        if len(works):
+            at_end[:, place] = [axis[works[-1]] for axis in line]
+    growth, frequency = at_end
     return {"mode": columns["mode"], "growth": growth, "frequency": frequency, "colour": columns["colour"]}

@@ -15,10 +15,12 @@ from proprotor.explore.analysis import LiveModes
 from proprotor.explore.curves import curves, ends
 from proprotor.explore.growth_plane import GrowthPlane
 from proprotor.explore.inputs import MapAxis
+from proprotor.explore.post import Columns
 from proprotor.plots.style import STABLE, UNSTABLE
 from proprotor.typing import Array
 from proprotor.units import KNOT
 
+_AXES = ("airspeed", "damping", "growth", "frequency")
 _DAMPING, _FREQUENCY, _GROWTH = (-5, 20), (0, 4.5), (-0.3, 0.15)
 _HEIGHT = 280  # pixels
 _BESIDE = "#8c8c8c"  # lines of the deck, with which the page compares
@@ -41,11 +43,11 @@ class Drawings:
     """
 
     def __init__(self, airspeeds: Array) -> None:
-        self.lines, self.dots = ColumnDataSource(name="lines"), ColumnDataSource(name="dots")
+        self.lines = _columns("lines", *_AXES, "mode", "colour", "dash", "width")
+        self.dots = _columns("dots", "mode", "growth", "frequency", "colour")
         self.deck = ColumnDataSource(_nothing(), name="deck")
-        self.boundary = ColumnDataSource({"x": [], "y": []}, name="boundary")
+        self.boundary, self.here = _columns("boundary", "x", "y"), _columns("here", "x", "y")
         self.deck_boundary = ColumnDataSource({"x": [], "y": []}, name="deck-boundary")
-        self.here = ColumnDataSource({"x": [], "y": []}, name="here")
         self.across = Range1d(start=airspeeds[0] / KNOT, end=airspeeds[-1] / KNOT)
         self.map = _figure("Stability map", ("", (0, 1)), ("", (0, 1)))
         self.plots = (self._damping(), self._root_locus(), self._frequency(), self._map())
@@ -79,7 +81,8 @@ class Drawings:
         x, y = axes
         across, up = plane.x / x.factor, plane.y / y.factor
         growth = np.ma.masked_invalid(np.clip(plane.growth, -_LARGEST, _LARGEST))
-        self._filled.set_data(contour_data(across, up, growth, _LEVELS, want_line=False))
+        filled: Any = contour_data(across, up, growth, _LEVELS, want_line=False).fill_data
+        self.filled.data = {"xs": filled.xs, "ys": filled.ys}
         self.boundary.data = _line_columns(plane, axes)
         self.map.x_range.update(start=across[0], end=across[-1])
         self.map.y_range.update(start=up[0], end=up[-1])
@@ -92,7 +95,7 @@ class Drawings:
 
     def show_place(self, x: float | None, y: float | None) -> None:
         """Mark the settings on the map, in the units of its axes; None where an axis is no setting."""
-        self.here.data = {"x": [np.nan if x is None else x], "y": [np.nan if y is None else y]}
+        self.here.data = {"x": np.array([x], float), "y": np.array([y], float)}
 
     # Plots --------------------------------------------------------------------------------------------------------
 
@@ -118,7 +121,7 @@ class Drawings:
             "Root locus", ("Growth Re s (per rev)", _GROWTH), ("Frequency |Im s| (per rev)", _FREQUENCY)
         )
         self._draw(plot, "growth", "frequency", [("growth", "$x{0.000}"), ("frequency", "$y{0.000}")])
-        plot.scatter("growth", "frequency", source=self.dots, color="colour", size=7)
+        plot.scatter("growth", "frequency", source=self.dots.model, color="colour", size=7)
         plot.add_layout(Span(location=0, dimension="height", line_color="black"))
         plot.add_layout(BoxAnnotation(left=0, fill_color=UNSTABLE, fill_alpha=1, level="image"))
         return plot
@@ -127,7 +130,7 @@ class Drawings:
         """Draw the lines of all modes over those of the deck, with the values that show beside the pointer."""
         plot.multi_line(across, up, source=self.deck, line_color=_BESIDE, line_width=1, line_dash="dash")
         style = {"line_color": "colour", "line_dash": "dash", "line_width": "width"}
-        drawn = plot.multi_line(across, up, source=self.lines, **style)
+        drawn = plot.multi_line(across, up, source=self.lines.model, **style)
         tooltips = [("mode", "@mode"), *values]
         plot.add_tools(HoverTool(renderers=[drawn], tooltips=tooltips, line_policy="nearest"))
 
@@ -135,7 +138,7 @@ class Drawings:
         """Return the map: what could not be analysed is grey, what is unstable is hatched."""
         self.map.background_fill_color = _FAILED
         nothing = np.full((2, 2), -1.0)
-        self._filled = self.map.contour(
+        filled = self.map.contour(
             np.arange(2.0),
             np.arange(2.0),
             nothing,
@@ -145,10 +148,11 @@ class Drawings:
             hatch_color="#b34700",
             hatch_alpha=0.35,
         )
+        self.filled = Columns(filled.fill_renderer.data_source)
         self.map.multi_line("x", "y", source=self.deck_boundary, line_color=_BESIDE, line_width=1.5)
-        self.map.multi_line("x", "y", source=self.boundary, line_color="black", line_width=2)
+        self.map.multi_line("x", "y", source=self.boundary.model, line_color="black", line_width=2)
         self.map.scatter(
-            "x", "y", source=self.here, marker="cross", size=16, line_width=2, line_color="#0072B2"
+            "x", "y", source=self.here.model, marker="cross", size=16, line_width=2, line_color="#0072B2"
         )
         return self.map
 
@@ -175,7 +179,12 @@ def _figure(title: str, across: tuple[str, _Ends | Range1d], up: tuple[str, _End
 
 def _nothing() -> dict[str, list[Any]]:
     """Return the columns of no line."""
-    return {axis: [] for axis in ("airspeed", "damping", "growth", "frequency")}
+    return {axis: [] for axis in _AXES}
+
+
+def _columns(name: str, *columns: str) -> Columns:
+    """Return columns without rows, to be sent with a post."""
+    return Columns(ColumnDataSource({column: [] for column in columns}, name=name))
 
 
 def _line_columns(plane: GrowthPlane, axes: tuple[MapAxis, MapAxis]) -> dict[str, list[Any]]:

@@ -16,7 +16,7 @@ from proprotor.explore.controls import GRIDS, airspeed_of_map, map_selections
 from proprotor.explore.drawings import Drawings
 from proprotor.explore.growth_plane import GrowthPlane, growth_plane
 from proprotor.explore.inputs import MapAxis, map_axis, slider_input
-from proprotor.explore.text import Text
+from proprotor.explore.post import Post, Text
 from proprotor.stability.parameter_lines import AIRSPEED
 from proprotor.units import KNOT, KTAS
 
@@ -46,6 +46,7 @@ class LiveMap:
         self.at: Slider = airspeed_of_map(chosen.case, chosen.airspeeds)
         self.compared = True
         self.message = Text("map-message", sizing_mode="stretch_width")
+        self.post = Post("map-post", drawings.filled, drawings.boundary, self.message)
         self._parts: Iterator[None] | None = None  # of the map that is computed now
         self._resting: Any = None  # Bokeh's callback that begins a map
         self._drawn: object = None  # the settings that the map shows
@@ -131,9 +132,11 @@ class LiveMap:
             cut = "" if at is None else f" at {at / KNOT:.4g} {KTAS}"
             self.drawings.show_map(plane, axes, cut)
             self.message.text = words.map_messages(plane)
+            self.post.send()
             yield from self._comparing(plane, axes, at)
         except InputError as error:
             self.message.text = words.alert(f"{error}. The map is that of the settings before.")
+            self.post.send()
 
     def _comparing(self, plane: GrowthPlane, axes: _Axes, at: float | None) -> Iterator[None]:
         """Draw the boundary of the deck, unless it is drawn already."""

@@ -23,8 +23,8 @@ from proprotor.explore.drawings import Drawings
 from proprotor.explore.input_panel import InputPanel
 from proprotor.explore.inputs import SliderInput, first_inputs
 from proprotor.explore.live_map import LiveMap
+from proprotor.explore.post import Post, Text, script
 from proprotor.explore.save_panel import SavePanel
-from proprotor.explore.text import Text, script
 from proprotor.model.provenance import reservations
 from proprotor.model.stamp import of_case, unusual_options
 from proprotor.rotor.options import CHOICES
@@ -67,12 +67,16 @@ class ExplorePage:
         self.document: Document | None = None
         self._waiting = self._held = False
         self._compared: object = None  # what the curves of the deck show
+        self._told_of: object = None  # the options that the text at the foot tells
         self.readout, self.message, self.legend, self.foot = (
             Text(name, sizing_mode="stretch_width")
             for name in ("readout", "message", "legend", "reservations")
         )
         self.modes, self.guide = Text("modes", width=SIDE), Text("help", width=SIDE)
         self.drawings = Drawings(airspeeds)
+        plots = (self.drawings.lines, self.drawings.dots, self.drawings.here)
+        texts = (self.readout, self.message, self.legend, self.foot, self.modes, self.guide)
+        self.post = Post("curves-post", *plots, *texts)
         self.inputs = InputPanel(self.chosen, self._soon, self._refuse, self._explain)
         self.switches = {name: option_switch(case, name, options[name]) for name in _SWITCHES}
         self.compare = Checkbox(label="Compare with the deck", active=True, name="compare")
@@ -84,23 +88,16 @@ class ExplorePage:
         """Build the page in a Bokeh document, and draw the modes of the deck."""
         self.document = self.map.document = document
         document.title = f"{self.case.title or self.case.name}: explore"
-        document.js_on_event(DocumentReady, CustomJS(code=script("names.js")))
+        for name in ("quick.js", "names.js"):
+            document.js_on_event(DocumentReady, CustomJS(code=script(name)))
         for name, switch in self.switches.items():
             switch.on_change("value", partial(self._switch_to, name))
         self.compare.on_change("active", lambda _, __, ___: self._soon())
         document.add_root(self._layout())
         document.add_root(self.saves.file)
+        self.post.put_on(document)
+        self.map.post.put_on(document)
         self.update()
-        for text in (
-            self.readout,
-            self.message,
-            self.legend,
-            self.foot,
-            self.modes,
-            self.guide,
-            self.map.message,
-        ):
-            text.put_on(document)
 
     def update(self) -> None:
         """Analyse and draw the case with all settings; if that is impossible, say why and keep the last drawing."""
@@ -116,10 +113,18 @@ class ExplorePage:
         self.message.text = words.messages(found)
         self.legend.text = words.legend(columns, self.compare.active)
         self.modes.text = words.table(found, own.rotor_speed)
-        origin = (*unusual_options(of_case(self.case, own.options)), *reservations(self.case))
-        self.foot.text = f"<small>{escape(' '.join(origin))}</small>"
+        self._show_origin()
         self.map.show_place(found)
+        self.post.send()
         self.map.soon()
+
+    def _show_origin(self) -> None:
+        """Say what the numbers rest on, unless it is said already: a stamp takes the time of many points."""
+        if self._told_of == (options := dict(self.chosen.options)):
+            return
+        self._told_of = options
+        origin = (*unusual_options(of_case(self.case, options)), *reservations(self.case))
+        self.foot.text = f"<small>{escape(' '.join(origin))}</small>"
 
     def _show_deck(self) -> None:
         """Draw the curves of the deck, unless they are drawn already."""
@@ -133,6 +138,7 @@ class ExplorePage:
 
     def _refuse(self, reason: str) -> None:
         self.message.text = words.alert(f"{reason}.")
+        self.post.send()
 
     def _explain(self, shown: Iterable[SliderInput]) -> None:
         """Put the meaning of each input that has a slider into the help."""
@@ -140,6 +146,7 @@ class ExplorePage:
             f"<dt><b>{escape(given.label)}</b></dt><dd>{escape(given.meaning)}</dd>" for given in shown
         )
         self.guide.text = f"{words.HELP}<dl>{''.join(meanings)}</dl>"
+        self.post.send()
 
     def _switch_to(self, name: str, _: str, __: str, chosen: str) -> None:
         self.chosen.options[name] = choice_of(chosen)
@@ -169,9 +176,9 @@ class ExplorePage:
             "More": column(self.inputs.exact, self.inputs.choice),
             "Model": column(*self.switches.values()),
             "Map": self.map.controls(),
-            "Modes": self.modes.div,
+            "Modes": self.modes.model,
             "Save": self.saves.buttons,
-            "Help": self.guide.div,
+            "Help": self.guide.model,
         }
         panels = Tabs(tabs=[TabPanel(title=name, child=child) for name, child in tabs.items()], name="tabs")
         side = column(row(reset, self.compare), panels, width=SIDE + 20)
@@ -179,6 +186,6 @@ class ExplorePage:
         title = Div(text=f"<h1 style='font-size:16px;margin:0'>{heading}</h1>", sizing_mode="stretch_width")
         above, below = (self.readout, self.message), (self.legend, self.map.message, self.foot)
         plots = self.drawings.layout()
-        shown = (title, *(text.div for text in above), plots, *(text.div for text in below))
+        shown = (title, *(text.model for text in above), plots, *(text.model for text in below))
         main = column(*shown, sizing_mode="stretch_width", stylesheets=[_FILLS])
         return row(side, main, spacing=8, sizing_mode="stretch_width", stylesheets=[_WRAPS])

@@ -17,7 +17,7 @@ from proprotor.explore.chosen import Chosen
 from proprotor.explore.controls import SIDE
 from proprotor.explore.inputs import SliderInput
 from proprotor.explore.live_map import LiveMap
-from proprotor.explore.text import script
+from proprotor.explore.post import script
 from proprotor.explore.words import changed
 
 
