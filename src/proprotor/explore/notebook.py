@@ -20,6 +20,7 @@ from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
     from proprotor.explore.page import ExplorePage
+    from proprotor.explore.turns import Turns
 
 _POINTS = 60  # airspeeds by default
 _HEIGHT = 920  # pixels
@@ -45,9 +46,9 @@ class _Explorer:
         self.address = f"http://{ADDRESS}:{opened.getsockname()[1]}/{place}"
         self._server = started(self._put_on, opened, IOLoop.current(), place)
 
-    def _put_on(self, document: Any) -> None:
+    def _put_on(self, document: Any, turns: Turns) -> None:
         self._shown = self._page()
-        self._shown.put_on(document)
+        self._shown.put_on(document, turns)
 
     @property
     def case(self) -> Case:
