@@ -3,6 +3,7 @@
 Bokeh's own client cannot do this: while it waits for a reply it throws away what the server sends in between.
 """
 
+import asyncio
 import json
 
 from bokeh.client.websocket import WebSocketClientConnectionWrapper
@@ -12,6 +13,8 @@ from bokeh.protocol import Protocol
 from bokeh.protocol.receiver import Receiver
 from bokeh.util.token import generate_jwt_token, generate_session_id
 from tornado.websocket import websocket_connect
+
+_LONGEST = 60  # s until an answer
 
 
 class Reader:
@@ -45,16 +48,11 @@ class Reader:
 
     async def answer(self):
         """Wait for the next change of the page, and return the names of what was changed."""
-        message = await self._message("PATCH-DOC")
+        message = await asyncio.wait_for(self._message("PATCH-DOC"), _LONGEST)
         message.apply_to_document(self.document)
         return [
             self.document.get_model_by_id(event["model"]["id"]).name for event in message.content["events"]
         ]
-
-    async def told_of(self, text):
-        """Wait until the page tells something."""
-        while text not in self.told:
-            await self.answer()
 
     async def close(self):
         self._socket.close()
