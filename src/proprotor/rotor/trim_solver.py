@@ -22,7 +22,7 @@ import numpy as np
 from proprotor.compiled.plans import Searched
 from proprotor.rotor import trim_compiled
 from proprotor.rotor.fused_balance import segments_of
-from proprotor.rotor.in_flight import find_in_flight, serves_in_flight
+from proprotor.rotor.in_flight import find_in_flight, rotors_of, serves_in_flight
 from proprotor.rotor.options import Options
 from proprotor.rotor.section_loads import BladeSections, mark_doubts
 from proprotor.rotor.trim import THRUST, TORQUE, UNKNOWNS, Target, Trim, has_offset_mass, take
@@ -420,7 +420,7 @@ def _real_trim(balance: Balance, few: BladeSections) -> Trim:
     sections, options, points = balance.sections, balance.options, balance.points
     if not serves_in_flight(balance, few):
         return solve_trim(sections, few, balance.quantities, options, balance.target, points).trim
-    found = find_in_flight(balance)
+    found = find_in_flight(rotors_of(balance), points)
     left = np.flatnonzero(~found.served)
     if len(left):
         target = {"collective": balance.target.collective, "load": balance.target.load}
