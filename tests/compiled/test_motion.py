@@ -97,3 +97,16 @@ def test_a_problem_with_too_many_states_is_left_to_others():
     n = eigenvalues.MOST_STATES // 2 + 1
     one = np.eye(n)[None]
     assert eigenvalues.roots_of_motion(one, one, one, range(n))[1].all()
+
+
+@pytest.mark.parametrize("n", [3, 100])
+def test_state_matrices_solve_the_equations_of_motion(n):
+    rng = np.random.default_rng(n)
+    mass, damping, stiffness = (rng.standard_normal((POINTS, n, n)) for _ in range(3))
+    mass += 3 * n * np.eye(n)
+    held = list(range(0, n, 2))
+    found, unsafe = motion.state_matrices(mass, damping, stiffness, held)
+    rows = found[:, len(held) :]
+    left = mass @ rows + np.concatenate([stiffness[..., held], damping], axis=-1)
+    assert not unsafe.any() and np.abs(left).max() < 1e-11
+    assert (found[:, : len(held)] == np.eye(n + len(held))[len(held) + np.array(held)]).all()

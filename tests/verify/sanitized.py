@@ -69,6 +69,7 @@ def equations_of_motion(n, count, seed):
     alike = min(map(len, (mass, damping, stiffness)))
     held = np.flatnonzero(rng.random(n) < rng.random())
     eigenvalues.roots_of_motion(mass[:alike], damping[:alike], stiffness[:alike], held)
+    motion.state_matrices(mass[:alike], damping[:alike], stiffness[:alike], held)
     motion.have_mass(mass)
     calls["equations of motion"] += 1
 

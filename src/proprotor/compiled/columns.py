@@ -58,6 +58,7 @@ _OWN = _Own()
 def lane_room(vectors: int) -> Array:
     """Return memory for vectors of lanes, at a place where they may begin, until the thread asks again.
 
+    The caller holds the array for as long as its address is in use: an address alone does not keep much memory.
     A few vectors have the same place each time: to get new memory takes longer than most calls.
     """
     size = (vectors + 1) * _WIDEST

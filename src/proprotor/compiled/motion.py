@@ -52,7 +52,7 @@ def on_support(matrices: Sequence[Array], support: Support) -> tuple[list[Array]
     points, size, inputs = given[-1].shape
     n = support.modes + size - 6
     found = [np.empty((points, n, n if place < 3 else inputs)) for place in range(len(given))]
-    certain = np.empty(points, dtype=bool)
+    certain, room = np.empty(points, dtype=bool), lane_room(n * n)
     library().on_support(
         ctypes.c_ssize_t(points),
         ctypes.c_int(size),
@@ -62,7 +62,7 @@ def on_support(matrices: Sequence[Array], support: Support) -> tuple[list[Array]
         *support.places,
         _POINTERS(*map(_start, found)),
         address(certain),
-        address(lane_room(n * n)),
+        address(room),
     )
     return found, certain
 
@@ -86,13 +86,14 @@ def state_matrices(mass: Array, damping: Array, stiffness: Array, held: Sequence
     states, places = n + len(held), np.array(held, dtype=np.int32)
     given = [np.ascontiguousarray(part, dtype=float) for part in (mass, damping, stiffness)]
     found, unsafe = np.empty((points, states, states)), np.empty(points, dtype=bool)
+    room = lane_room(states * states + n * (n + states))
     library().state_matrices(
         ctypes.c_int(n),
         ctypes.c_int(len(held)),
         address(places),
         ctypes.c_ssize_t(points),
         _POINTERS(*map(_start, given)),
-        *map(address, (found, unsafe, lane_room(states * states + n * (n + states)))),
+        *map(address, (found, unsafe, room)),
     )
     return found, unsafe
 
