@@ -32,8 +32,11 @@ Put the files of an example into a folder, and in an environment with proprotor 
 script, `python changed-rotor.py`, or open the notebook in Jupyter. An example takes seconds, and draws the picture
 below its files.
 
-None of them runs in the browser without installing: NumPy and SciPy for browsers come from the servers of Pyodide
-alone, and no page of this site fetches anything from elsewhere.
+None of them runs in the browser without installing. Python for browsers, Pyodide 314.0.7 when this was looked up in
+December 2026, has NumPy, SciPy and all other compiled packages that proprotor needs, in versions that it takes, but for
+psutil, of which there is no build for browsers. The builds of NumPy and SciPy stand on the servers of Pyodide alone and
+in neither of the indexes of Python and of JavaScript packages, so that a site that brings all along cannot be made of
+these; and no page of this site fetches anything from elsewhere.
 """
 
 

@@ -91,7 +91,7 @@ class Results:
 
     def __init__(self) -> None:
         self.named: dict[str, sp.Expr] = {}
-        self._numbers: dict[sp.Expr, int] = {}
+        self._numbers: dict[sp.Expr, int] = {}  # by what each result is when expanded
 
     def layout(
         self, name: str, matrix: Matrix, same: Mapping[sp.Symbol, sp.Expr] | None = None
@@ -111,13 +111,13 @@ class Results:
         expanded = sp.expand(value.xreplace(_squares(value)))
         if expanded == 0 or _vanishes(expanded):
             return 0
-        short, opposite = sp.factor_terms(expanded), sp.factor_terms(sp.expand(-expanded))
+        opposite = sp.expand(-expanded)
         if opposite in self._numbers:
             return -self._numbers[opposite]
-        if short not in self._numbers:
-            self.named["_".join((name, *place))] = short
-            self._numbers[short] = len(self.named)
-        return self._numbers[short]
+        if expanded not in self._numbers:
+            self.named["_".join((name, *place))] = sp.factor_terms(expanded)
+            self._numbers[expanded] = len(self.named)
+        return self._numbers[expanded]
 
 
 def _vanishes(expanded: sp.Expr) -> bool:

@@ -14,6 +14,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from benchmarks import pictures
 from benchmarks.paper_figures.content import Content, Curve, Mark
+from proprotor.plots.canvas import name_unstable
 from proprotor.plots.line_of_sweep import Positions
 from proprotor.plots.mode_lines import mark_failed
 from proprotor.plots.style import COLOURS, LABEL_SIZE, UNSTABLE, in_style, white_box
@@ -68,7 +69,7 @@ def _dress(ax: Axes, content: Content) -> None:
         ax.axhline(0, color="black", linewidth=0.8)
     if content.is_damping:
         ax.axhspan(content.y_limits[0], 0, color=UNSTABLE, linewidth=0, zorder=0.5)
-        ax.text(0.01, 0.015, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+        name_unstable(ax)
     if content.assumed:
         _say_assumed(ax)
 

@@ -227,12 +227,12 @@ def _markdown_table(header: Sequence[str], rows: Iterable[Iterable[object]]) -> 
 
 
 def _derived_by(number: str) -> str:
-    """Return the name of the counterpart with a link to its place in the index of equations."""
+    """Return the name of the counterpart, without its module, with a link to its place in the index of equations."""
     known = {str(key): key for key in COUNTERPARTS}
-    name = "tables.audit_table"
+    name = "audit_table"
     if number in known:
         function = COUNTERPARTS[known[number]]
-        name = f"counterparts.{getattr(function, 'func', function).__name__}"
+        name = getattr(function, "func", function).__name__
     return f"[`{name}`](equations.md#{anchor(heading(known.get(number, number)))})"
 
 

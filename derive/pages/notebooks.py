@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = ROOT / "notebooks"
 PAGES = ROOT / "docs" / "notebooks"
 TIMEOUT = 300  # s for a cell
-FORGET = "%reset -f"  # all names of the kernel
+FORGET = "# %%\n%reset -f"  # a cell after which the kernel has no names
 
 
 def sources() -> list[Path]:
@@ -54,7 +54,6 @@ def executed(chosen: Sequence[Path]) -> list[NotebookNode]:
     from jupyter_client.kernelspec import KernelSpecManager
     from jupyter_client.manager import AsyncKernelManager
     from nbclient import NotebookClient
-    from nbformat.v4 import new_code_cell
 
     class OwnKernel(AsyncKernelManager):
         """A kernel of this interpreter, reached over sockets in the file system."""
@@ -65,8 +64,9 @@ def executed(chosen: Sequence[Path]) -> list[NotebookNode]:
             )
 
     notebooks: list[NotebookNode] = [jupytext.read(source) for source in chosen]
-    together = notebooks[0].copy()
-    together.cells = [cell for notebook in notebooks for cell in (new_code_cell(FORGET), *notebook.cells)]
+    together: NotebookNode = jupytext.reads("", "py:percent")
+    for notebook in notebooks:
+        together.cells += [*jupytext.reads(FORGET, "py:percent").cells, *notebook.cells]
     in_root = {"metadata": {"path": str(ROOT)}}
     client = NotebookClient(
         together, kernel_manager_class=OwnKernel, kernel_name="python3", timeout=TIMEOUT, resources=in_root

@@ -39,9 +39,12 @@ class Datum:
     r_over_R : tuple of float or None
         Stations of a distribution.
     rotor_speed : float or None
-        One per revolution in rad/s, for a frequency that was written per revolution.
+        One per revolution in rad/s, for a frequency of a deck.
     beyond : str or None
         The blade beyond the stations of a distribution: "held", "nothing", or None when the deck does not say.
+    form : str
+        What else the number may be written as: "tangent", the angle of which it is the tangent; "frequency", a
+        frequency per revolution; "" for nothing else.
     """
 
     written: str
@@ -52,6 +55,7 @@ class Datum:
     r_over_R: tuple[float, ...] | None = None
     rotor_speed: float | None = None
     beyond: str | None = None
+    form: str = ""
 
 
 def deck_unit(number: Datum) -> tuple[str, float]:

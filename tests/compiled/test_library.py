@@ -54,6 +54,20 @@ model = case.linearize(np.linspace(60.0, 180.0, 11), backend="compiled")
 found = (*model.matrices.values(), *model.rotor.matrices.values(), model.trim.thrust, state_matrix(model))
 print(json.dumps([part.ravel().tolist() for part in found]))
 """
+SCANS = """
+import json
+import numpy as np
+from proprotor.compiled.screening import screened_steps
+rng, states, points = np.random.default_rng(0), 19, 200
+x = np.linspace(0, 3, points)[:, None]
+damping, rise, wave = rng.normal(size=(3, states))
+values = -0.05 - 0.3 * damping**2 + 0.4 * np.sin(wave * x) ** 2 + 1j * (rng.normal(size=states) + 0.2 * rise * x)
+values[:, -6:] = values[:, -6:].real
+steps = np.arange(points - 1), np.arange(1, points), np.tile(np.arange(states), (points - 1, 1))
+line, block, error = np.zeros(points, dtype=int), np.zeros(states, dtype=int), np.full(values.shape, 1e-9)
+found = [screened_steps(values, error, block, x.ravel(), line, steps, level) for level in (0.0, 0.02, 0.1)]
+print(json.dumps([part.tolist() for of_level in found for part in of_level]))
+"""
 REASON = """
 import json
 from proprotor.compiled.library import why_not
@@ -96,7 +110,7 @@ def test_every_width_of_vectors_has_the_same_bits_and_a_library_of_its_own(tmp_p
         compiler_that_refuses(tmp_path, "native"),
         *(f"{compiler} -DLANES={lanes}" for lanes in (4, 8)),
     )
-    for code in (ROOTS, MODELS):
+    for code in (ROOTS, MODELS, SCANS):
         widths = [answer(code, CC=command, **cache) for command in commands]
         assert widths[0] == widths[1] == widths[2] == answer(code)
     assert len(list((tmp_path / "cache").iterdir())) == 3

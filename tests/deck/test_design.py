@@ -199,7 +199,7 @@ def test_a_mass_distribution_with_many_hinges():
     [
         ({"rotor.precon": 0.1}, "did you mean rotor.precone?"),
         ({"precone": 0.1}, "unknown input"),
-        ({"rotor.n_blades": 4}, "unknown input"),
+        ({"rotor.n_blades": 4}, "it is a whole number"),
         ({"rotor.precone": "2 kg"}, "must be an angle"),
         ({"rotor.precone": np.nan}, "must be finite"),
         ({"rotor.radius": -1.0}, "rotor.radius = -1 m"),

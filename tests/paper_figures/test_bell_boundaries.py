@@ -146,8 +146,8 @@ def test_the_symmetric_boundary_is_near_the_published_points(found):
     assert chord[0] < 20
     assert (chord[1:], beam[1:]) == ((23, 0), (9, 0))
     page = PAGE.read_text()
-    assert f"rms **{chord[0]:.0f} kt** below tip Mach .9 ({chord[1]} points)" in page
-    assert f"rms **{beam[0]:.0f} kt** below tip Mach .9 ({beam[1]} points)" in page
+    assert f"rms **{chord[0]:.1f} kt** below tip Mach .9 ({chord[1]} points)" in page
+    assert f"rms **{beam[0]:.1f} kt** below tip Mach .9 ({beam[1]} points)" in page
 
 
 def test_the_antisymmetric_boundary_lies_between_the_two_published_ones(found):

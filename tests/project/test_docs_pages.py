@@ -11,7 +11,7 @@ from derive.pages import glossary
 from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
 from proprotor import plots
-from tests.documentation import DOCS, ROOT, name_of
+from tests.documentation import DOCS, ROOT, blocks, name_of
 
 PAGES = [ROOT / "README.md", *(page for page in sorted(DOCS.rglob("*.md")) if "_build" not in page.parts)]
 LINK = re.compile(r"(?<!!)\[(?:[^\[\]]|\[[^\]]*\])*\]\(([^)\s]+)\)")
@@ -102,6 +102,8 @@ WRITTEN_BY_HAND = [
     if not re.search(r"[Ww]ritten by\s+`?(python|make|proprotor)", page.read_text(encoding="utf-8")[:600])
 ]
 WRITTEN_TABLE = re.compile(r"^<!-- python -m .*?^<!-- end of the table -->", re.DOTALL | re.MULTILINE)
+LONGEST_PARAGRAPH = 150  # words, also of an item of a list: more is a wall of text
+COLUMNS = 118  # of a line of code or output that the page shows without scrolling; commands wrap
 MOST_WORDS = 3000  # of a page that is read, not looked up, as tables of a command are: a quarter of an hour
 
 
@@ -109,3 +111,19 @@ MOST_WORDS = 3000  # of a page that is read, not looked up, as tables of a comma
 def test_a_page_can_be_read_in_a_quarter_of_an_hour(page):
     read = WRITTEN_TABLE.sub("", page.read_text(encoding="utf-8"))
     assert len(read.split()) <= MOST_WORDS, "split the page"
+
+
+@pytest.mark.parametrize("page", WRITTEN_BY_HAND, ids=name_of)
+def test_no_paragraph_is_a_wall_of_text(page):
+    for block in re.split(r"\n[ \t]*\n", prose(page)):
+        if block.lstrip().startswith(("|", "<!--")):  # a table
+            continue
+        for item in re.split(r"\n(?=\s*(?:[-*]|\d+\.) )", block):
+            words = item.split()
+            assert len(words) <= LONGEST_PARAGRAPH, f"split the paragraph: {' '.join(words[:8])} ..."
+
+
+@pytest.mark.parametrize("page", WRITTEN_BY_HAND, ids=name_of)
+def test_code_and_output_fit_the_page(page):
+    lines = [line for block in blocks(page) if block.kind != "sh" for line in block.text.splitlines()]
+    assert [line for line in lines if len(line) > COLUMNS] == []

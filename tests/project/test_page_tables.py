@@ -39,6 +39,7 @@ STATED = [
     ("README.md", r"the wing is at ([\d.]+) kt", "xv15-bell-frequencies", "beam"),
     ("README.md", r"comes first, at ([\d.]+) kt", "xv15-bell-frequencies", "regressive"),
     ("docs/tutorial.md", r"the XV-15 as it is has ([\d.]+) kt", "xv15", "beam"),
+    ("docs/howto/close-a-loop.md", r"this wing flutters at ([\d.]+) KTAS", "xv15", "beam"),
     ("docs/howto/flutter.md", r"The wing follows at ([\d.]+) kt", "xv15-bell-frequencies", "beam"),
     ("docs/theory/linkages.md", r"\| as it is \| ([\d.]+) beam", "xv15", "beam"),
     (
@@ -54,7 +55,6 @@ STATED = [
         "xv15-uncoupled",
         "chord",
     ),
-    ("docs/xv15.md", r"\| `xv15-wing` \| beam [\d.]+ \| beam ([\d.]+)", "xv15-wing", "beam"),
     ("docs/xv15-effects.md", r"\| one airfoil, as the deck is \| ([\d.]+) beam", "xv15", "beam"),
     ("docs/xv15-effects.md", r"\| all of them \| ([\d.]+) beam", "xv15-sections", "beam"),
     ("docs/xv15-effects.md", r"\| as the deck is \| ([\d.]+) ", "xv15", "beam"),

@@ -5,7 +5,7 @@ best of all assignments; roots followed by their neighbourhood alone in small st
 """
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -16,7 +16,8 @@ from proprotor.explore.analysis import live_modes
 from proprotor.model.first_order import state_matrix
 from proprotor.model.rigid_propeller import WhirlDerivatives, rigid_propeller
 from proprotor.plots.mode_motion import mode_motion
-from proprotor.rotor.motions import motions, name_list
+from proprotor.rotor.motions import SECOND, motions, name_list
+from proprotor.rotor.options import LOCKABLE
 from proprotor.stability.boundary_lines import boundary_lines
 from proprotor.stability.branches import by_branch
 from proprotor.stability.matching import POOR
@@ -561,3 +562,53 @@ def test_a_step_of_no_quality_is_a_warning_of_a_study():
         assert ("which root is which" in str(found.warning.values[design, point])) == lost.values[
             design, point
         ]
+
+
+# One name for one mode -----------------------------------------------------------------------------------------------
+
+
+def _options(fewest):
+    """Every set of so many locked motions or more, with every way in which air and lift may have states."""
+    ways = [{}, {"inflow": "dynamic"}, {"lift": "lagged"}, {"airloads": "none"}, {"pitch": "rigid"}]
+    for count in range(fewest, len(LOCKABLE) + 1):
+        for locked in combinations(LOCKABLE, count):
+            for way in ways:
+                yield {"locked": locked, **way}
+
+
+@pytest.mark.parametrize(("deck", "fewest"), [("xv15-uncoupled", 0), ("xv15-aircraft", 4)])
+def test_no_two_modes_of_a_point_have_one_name(deck, fewest):
+    """Names are counted point by point; sweeps and single models have the same ones for the same eigenvalues."""
+    case, seconds = pp.load_case(deck), 0
+    for options in _options(fewest):
+        try:
+            model = case.linearize(airspeeds(case, 3), **options)
+        except pp.InputError:  # options that exclude each other, such as rigid pitch that is locked
+            continue
+        found = model.modes()
+        for names, values in zip(found.name.values, found.eigenvalue.values, strict=True):
+            there = [name for name, value in zip(names, values, strict=True) if np.isfinite(value)]
+            assert "" not in there and len(set(there)) == len(there), options
+            for name in there:
+                if name.endswith(SECOND):
+                    seconds += 1
+                    first, second = (
+                        values[names.tolist().index(one)] for one in (name.removesuffix(SECOND), name)
+                    )
+                    assert first.imag == second.imag == 0 and second.real <= first.real
+    assert seconds
+
+
+@pytest.mark.parametrize("options", [{"inflow": "dynamic", "locked": LOCKABLE}, {"lift": "lagged"}, {}])
+def test_a_single_model_and_a_sweep_have_the_same_names(options):
+    case = pp.load_case("xv15")
+    speeds = airspeeds(case, 5)
+    swept, alone = case.sweep(speeds, **options), case.linearize(speeds, **options).modes()
+    for row in range(len(speeds)):
+        wanted = dict(zip(swept.mode.values.tolist(), swept.eigenvalue.values[row], strict=True))
+        wanted = {name: value for name, value in wanted.items() if np.isfinite(value)}
+        found = dict(zip(alone.name.values[row].tolist(), alone.eigenvalue.values[row], strict=True))
+        found.pop("", None)
+        assert found.keys() == wanted.keys()
+        for name, value in found.items():
+            assert value == pytest.approx(wanted[name], rel=1e-9, abs=1e-9)

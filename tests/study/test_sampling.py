@@ -1,19 +1,18 @@
 """Samples of distributions by closed forms: ratios that are equally likely, and inputs that vary together."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 import proprotor as pp
 from proprotor import sampling
+from proprotor.datum import Datum
 from proprotor.errors import InputError
 
 KNOWN = {
-    "mast": SimpleNamespace(si=2.0, unit="m"),
-    "slope": SimpleNamespace(si=-0.5, unit="rad"),
-    "swing": SimpleNamespace(si=3.0, unit="m"),
-    "word": SimpleNamespace(si="held", unit=""),
+    "mast": Datum("", 2.0, "m"),
+    "slope": Datum("", -0.5, "rad"),
+    "swing": Datum("", 3.0, "m"),
+    "word": Datum("", "held", ""),
 }
 
 

@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import proprotor as pp
-from proprotor.compiled import eigenvalues, motion
+from proprotor.compiled import eigenvalues, motion, screening
 from proprotor.compiled.library import library, why_not
 from tests.compiled.matrices import FAMILIES
 
@@ -90,6 +90,32 @@ def supports(size, modes, count, shared, seed):
     calls["supports"] += 1
 
 
+@hostile
+@given(SIZES, st.integers(0, 5), st.integers(2, 9), st.floats(-0.9, 0.9), seeds)
+def scans(states, lines, points, level, seed):
+    """Scans of roots of all sizes, alike and in pairs, in blocks, whose points stand in any order."""
+    rng = np.random.default_rng(seed)
+    values = rng.standard_normal((lines * points, states)) + 1j * rng.integers(
+        -1, 2, (lines * points, states)
+    )
+    values *= rng.choice([1e-150, 1.0, 1.0, 1.0, 1e150], (len(values), 1))
+    values[:, states // 2 :][:, : states // 3] = values[:, : states // 3].conj()
+    order = rng.permutation(len(values)).reshape(lines, points)
+    line, position = np.empty(len(values), dtype=int), np.empty(len(values))
+    line[order], position[order] = np.arange(lines)[:, None], np.arange(points)
+    before, after = order[:, :-1].ravel(), order[:, 1:].ravel()
+    block = np.sort(rng.integers(0, rng.integers(1, 3), states))
+    error = np.where(rng.random(values.shape) < 0.2, rng.choice([1e-9, np.inf]), 0.0)
+    if states <= eigenvalues.MOST_STATES:
+        assert screening.serves_screening(values)
+        successor, shared = screening.nearest_roots(values, block, before, after)
+        for step in np.flatnonzero(shared):
+            successor[step] = rng.permutation(states)
+        steps = (before, after, successor)
+        screening.screened_steps(values, error, block, position, line, steps, level)
+    calls["scans"] += 1
+
+
 @settings(hostile, max_examples=80)
 @given(st.data(), counts, seeds)
 def models(data, count, seed):
@@ -123,7 +149,7 @@ def main():
     if "--fault" in sys.argv:
         fault()
         return
-    for run in (eigenvalue_problems, equations_of_motion, supports, models):
+    for run in (eigenvalue_problems, equations_of_motion, supports, scans, models):
         run()
     print(*(f"{count} {name}" for name, count in calls.items()), sep=", ")
 

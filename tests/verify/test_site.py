@@ -11,7 +11,8 @@ import pytest
 
 pytestmark = pytest.mark.verify
 
-DOCS = Path(__file__).parents[2] / "docs"
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
 LOADED = {"script": "src", "link": "href", "img": "src", "iframe": "src"}
 
 
@@ -78,6 +79,13 @@ def test_every_picture_has_a_text(site):
     """But for those that a notebook drew when the site was made, whose code stands above them."""
     for path, page in site.items():
         assert not [source for source in page.without_text if "_images" not in source], path
+
+
+def test_no_page_shows_where_the_site_was_made(site):
+    """Such as the address of an object, or the folder of a module, which every machine has another of."""
+    for path in site:
+        text = path.read_text(encoding="utf-8")
+        assert str(ROOT) not in text and not re.search(r"\bat 0x[0-9a-f]{6}", text), path
 
 
 def test_formulas_are_set(site):

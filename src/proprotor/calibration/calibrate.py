@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from proprotor.calibration.identifiability import Directions, covariance, directions, not_told
-from proprotor.calibration.predicted import Predictor
+from proprotor.calibration.predicted import Predictor, start_of
 from proprotor.calibration.targets import Target, targets_of
-from proprotor.deck.vary import check_input, design_inputs
+from proprotor.deck.input_values import input_values
+from proprotor.deck.vary import inputs_at
 from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.tables.points import Points
 from proprotor.typing import Array, Dataset
-from proprotor.units import values_in_si
 
 _TOLERANCE = 1e-8  # relative, of inputs and of the sum of squares
 _UNLIKELY = 0.01  # as chance: a misfit that the errors of the points do not explain
@@ -112,7 +112,6 @@ class _Fit(NamedTuple):
 
 def _bounds(case: Configuration, inputs: Sequence[str] | Mapping[str, Any]) -> dict[str, tuple[float, float]]:
     """Return the bounds of the inputs by path, SI."""
-    known, found = design_inputs(case), {}
     given = (
         inputs
         if isinstance(inputs, Mapping)
@@ -120,8 +119,8 @@ def _bounds(case: Configuration, inputs: Sequence[str] | Mapping[str, Any]) -> d
     )
     if not given:
         raise InputError("inputs", None, "must name at least one input")
+    known, found = inputs_at(case, given), dict[str, tuple[float, float]]()
     for path, ends in given.items():
-        check_input(path, known)
         value = known[path].si
         if np.ndim(value):
             raise InputError(path, f"array of shape {np.shape(value)}", "must be one number to start from")
@@ -130,7 +129,7 @@ def _bounds(case: Configuration, inputs: Sequence[str] | Mapping[str, Any]) -> d
             continue
         if not isinstance(ends, Sequence) or isinstance(ends, str) or len(ends) != 2:
             raise InputError(path, ends, "must have two bounds, low and high")
-        low, high = (float(values_in_si(end, known[path].unit, path).item()) for end in ends)
+        low, high = (float(input_values(path, end, known[path]).item()) for end in ends)
         if not low < value < high:
             raise InputError(
                 path, f"{value:g} {known[path].unit}".strip(), f"must lie between {low:g} and {high:g}"
@@ -190,7 +189,7 @@ def _dataset(
     import xarray  # here, because it takes long to import
     from scipy.stats import chi2
 
-    start, ends = _start(case, predictor.paths), np.array(list(bounds.values()))
+    start, ends = start_of(case, predictor.paths), np.array(list(bounds.values()))
     size = _input_size(start, ends)
     free = ~fit.at_bound
     told = directions(fit.jacobian * free, size)
@@ -205,7 +204,7 @@ def _dataset(
     chance = float(chi2.sf((misfit**2).sum(), freedom)) if freedom else 1.0
     names, doubts = predictor.names_and_doubts(fit.values)
     warnings = _warnings(predictor, fit, told, names, chance) + doubts
-    units = [case.given[path].unit for path in predictor.paths]
+    units = [number.unit for number in inputs_at(case, predictor.paths).values()]
     by_target = {
         "measured": measured,
         "measured_error": error,
@@ -247,11 +246,6 @@ def _dataset(
             "evaluations": fit.evaluations,
         },
     )
-
-
-def _start(case: Configuration, paths: Sequence[str]) -> Array:
-    """Return the values of the deck (inputs,), SI."""
-    return np.array([float(case.given[path].si) for path in paths])
 
 
 def _coordinates(targets: Sequence[Target]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from proprotor.calibration.targets import Target
-from proprotor.deck.vary import vary
+from proprotor.deck.vary import inputs_at, vary
 from proprotor.errors import InputError, check_known
 from proprotor.model.configuration import Configuration
 from proprotor.model.doubts import reasons_for_doubt
@@ -55,7 +55,7 @@ class Predictor:
     roots: _Roots = field(init=False)
 
     def __post_init__(self) -> None:
-        self.at = np.array([float(self.case.given[path].si) for path in self.paths])
+        self.at = start_of(self.case, self.paths)
         found = np.empty(len(self.targets), dtype=complex)
         for airspeed, places in self._by_airspeed():
             names, modes, *_ = named_modes(self.case, airspeed, None, self.options)
@@ -122,7 +122,7 @@ class Predictor:
     def _with_rates(self, design: Array, values: Array) -> _Roots:
         """Return roots at a design with their derivatives."""
         case = self.design(design)
-        inputs = {path: case.given[path] for path in self.paths}
+        inputs = inputs_at(case, self.paths)
         rates = np.empty((len(values), len(self.paths)), dtype=complex)
         for airspeed, places in self._by_airspeed():
             model = case.linearize(airspeed, **self.options)
@@ -136,6 +136,11 @@ def _numbers(targets: Sequence[Target], roots: Array) -> Array:
     is_frequency = np.array([target.quantity == FREQUENCY for target in targets])
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(is_frequency, np.abs(roots.imag), -roots.real / np.abs(roots))
+
+
+def start_of(case: Configuration, paths: Sequence[str]) -> Array:
+    """Return the values of the deck (inputs,), SI."""
+    return np.array([float(number.si) for number in inputs_at(case, paths).values()])
 
 
 def _derivatives(targets: Sequence[Target], roots: _Roots) -> Array:

@@ -12,7 +12,8 @@ from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
 from proprotor.commands.worst_of import write_worst_of
-from proprotor.deck.vary import check_input, design_inputs
+from proprotor.deck.input_values import shown_unit
+from proprotor.deck.vary import design_inputs, inputs_at
 from proprotor.errors import InputError
 from proprotor.model.doubts import doubts_along
 from proprotor.tables.boundary_table import (
@@ -112,8 +113,8 @@ def boundary(
     if mode and first:
         raise InputError("--first", None, "goes without --mode")
     case, path, given = _case_and_input(request, against)
-    unit = arguments.unit_of(given)
-    across = Quantity(path, design_inputs(case)[path].unit)
+    number = inputs_at(case, [path])[path]
+    unit, across = shown_unit(arguments.unit_of(given), number), Quantity(path, number.unit)
     measured = arguments.points_of(
         points, outputs.plot, across, [arguments.airspeed_points(case.operation.density)]
     )
@@ -167,11 +168,8 @@ def _case_and_input(request: arguments.Request, against: str) -> tuple[Case, str
         values_in_si(given, "m", whole)  # raises an error that names the input
         own = {"case.title": case.title or case.name, whole: at}  # the title must not tell one altitude
         request = request._replace(settings={**request.settings, **own})
-        case = request.load()
-        known = design_inputs(case)
-    found = whole if whole in known else path
-    check_input(found, known)
-    return case, found, given
+        return request.load(), whole, given
+    return case, whole if whole in known else path, given
 
 
 def _scan_of(case: Case, scan: str | None) -> str | None:

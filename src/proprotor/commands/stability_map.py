@@ -10,7 +10,8 @@ import numpy as np
 from proprotor.case import Case
 from proprotor.commands import arguments, output
 from proprotor.commands.waiting import waiting
-from proprotor.deck.vary import design_inputs
+from proprotor.deck.input_values import shown_unit
+from proprotor.deck.vary import inputs_at
 from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.doubts import MARK, map_doubts, marked
@@ -116,8 +117,9 @@ def _axis(option: str, path: str, given: str, case: Case, density: float | None)
         values, factor = speeds(given, option, density), float(speed_factor(unit, density))
         unit = airspeed_unit(unit)
     else:
-        designs = grid({path: given}).resolve(design_inputs(case))
-        values, factor = designs.values[path], factor_to_si(given, unit, designs.units[path])
+        known = inputs_at(case, [path])
+        values, unit = grid({path: given}).resolve(known).values[path], shown_unit(unit, known[path])
+        factor = factor_to_si(given, unit, known[path].unit)
     if len(values) < 2:
         raise InputError(option, f"{path}={given}", f"must be a range, start:stop:step, such as {_EXAMPLE}")
     return _Axis(path, values, unit, factor)
@@ -127,7 +129,7 @@ def _quantity(axis: _Axis, case: Case, density: float | None) -> Quantity:
     """Return what a column of points for an axis may be."""
     if axis.path == _AIRSPEED:
         return arguments.airspeed_points(density)
-    return Quantity(axis.path, design_inputs(case)[axis.path].unit)
+    return Quantity(axis.path, inputs_at(case, [axis.path])[axis.path].unit)
 
 
 def _label(axis: _Axis) -> str:

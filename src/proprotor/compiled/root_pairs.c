@@ -148,7 +148,7 @@ int keeps_off(const struct scan *scan, const struct ends *ends, ptrdiff_t step, 
     }
     whole found = every(-1);
     for (int vector = 0; vector < PLACES && !any(~found); vector++) {
-        lanes share;
+        lanes share = {0};
         for (int lane = 0; lane < LANES; lane++) {
             int part = vector * LANES + lane + 1;
             share[lane] = (double)(part < PARTS ? part : PARTS / 2) / PARTS;

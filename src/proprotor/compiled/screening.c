@@ -12,7 +12,7 @@
 /* The numbers of the states in the lanes of a vector. */
 static whole numbers(int vector)
 {
-    whole found;
+    whole found = every(0);
     for (int lane = 0; lane < LANES; lane++) found[lane] = vector * LANES + lane;
     return found;
 }

@@ -28,7 +28,9 @@ asked for, with the source of every number, or the text of a deck and the descri
     build_aircraft      the airframe of a whole aircraft from numbers
     build_control       control loops from a deck, and their numbers by path
     each_design         each different design of a batch, built once
+    left_out            numbers that a deck leaves out, at their defaults
     left                what differs on the left side of an aircraft
+    input_values        values of an input in every form that a deck takes
     vary                other designs: other values for numbers of the deck
     conditions          the conditions of an envelope: the deck and its variants, each as a case
     describe            every field in words
@@ -43,8 +45,17 @@ The room may import the ground (`errors`, `typing`, `needs`, `units`, `datum`, `
 
 from proprotor.deck.build import load
 from proprotor.deck.file import list_cases, read_tables
+from proprotor.deck.input_values import input_values, shown_unit
 from proprotor.deck.per_revolution import as_one_file
-from proprotor.deck.vary import added_loops, check_input, design_inputs, varied_numbers, vary, with_control
+from proprotor.deck.vary import (
+    added_loops,
+    check_input,
+    design_inputs,
+    inputs_at,
+    varied_numbers,
+    vary,
+    with_control,
+)
 from proprotor.deck.written import FilePath, PerRevolution
 
 __all__ = [
@@ -58,11 +69,14 @@ __all__ = [
     "describe",
     "design_inputs",
     "fields_page",
+    "input_values",
+    "inputs_at",
     "list_cases",
     "load",
     "read_tables",
     "schema",
     "settings",
+    "shown_unit",
     "template",
     "validation",
     "varied_numbers",

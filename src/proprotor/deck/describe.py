@@ -160,7 +160,7 @@ def _of_section(section: type[Section], place: str, kind: str) -> Iterator[DeckF
             unit=_unit(reading),
             range=f"{reading.least} or more" if reading.form == "count" else reading.bound.range,
             required=field.is_required() or (is_one_side and name not in section.may_lack),
-            default=_default(field, reading, _defaults(section).get(name, MISSING)),
+            default=_default(field, reading, defaults_of(section).get(name, MISSING)),
             instead_of=_instead_of(section, name),
             form=reading.form,
         )
@@ -220,8 +220,8 @@ def _instead_of(section: type[Section], name: str) -> tuple[str, ...]:
 
 
 @cache
-def _defaults(section: type[Section]) -> dict[str, Any]:
-    """Return the defaults of the class that a section describes, by field."""
+def defaults_of(section: type[Section]) -> dict[str, Any]:
+    """Return the SI values of fields that a deck leaves out, by field, as far as the section or its class has them."""
     described: dict[type[Section], tuple[type, ...]] = {
         deck.RotorSection: (Rotor,),
         deck.AirfoilSection: (Airfoil, AirfoilRegions),
@@ -235,7 +235,8 @@ def _defaults(section: type[Section]) -> dict[str, Any]:
         support_sections.WingAerodynamicsSection: (WingAerodynamics,),
         support_sections.AssumedShapeSection: (WingAerodynamics,),
     }
-    return {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
+    of_class = {entry.name: entry.default for kind in described.get(section, ()) for entry in fields(kind)}
+    return of_class | dict(section.defaults)
 
 
 def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
@@ -243,7 +244,8 @@ def _default(field: FieldInfo, reading: Reading, constructed: Any) -> str:
     if field.is_required():
         return ""
     if isinstance(constructed, int | float) and not isinstance(constructed, bool):
-        return f"{constructed:g} {reading.unit}".strip()
+        unit = "" if isinstance(reading, AfterChoice) else reading.unit
+        return f"{constructed:g} {unit}".strip()
     is_word = isinstance(field.default, bool | str) and field.default != ""
     return list_choices((field.default,)) if is_word else ""
 

@@ -73,6 +73,10 @@ class Reading:
         """
         return self.read(raw)
 
+    def unit_after(self, before: Mapping[str, Any]) -> str:
+        """Return the SI unit, given the fields of its section."""
+        return self.unit
+
 
 _READERS: dict[str, Callable[[Any, Reading], Datum]] = {
     "number": lambda raw, field: reading.read_quantity(raw, field.unit, field.bound),
@@ -118,8 +122,11 @@ class AfterChoice(Reading):
         """Return the value in the unit that follows from the earlier field."""
         if self.choice not in before:
             return None
-        unit = self.unit if before[self.choice] == self.usual else self.other_unit
-        return replace(self, unit=unit).read(raw)
+        return replace(self, unit=self.unit_after(before)).read(raw)
+
+    def unit_after(self, before: Mapping[str, Any]) -> str:
+        """Return the SI unit that follows from the earlier field."""
+        return self.unit if before[self.choice] == self.usual else self.other_unit
 
 
 class _AlongTheBlade(Reading):
@@ -226,6 +233,10 @@ class Section(BaseModel):
 
     alternatives: ClassVar[tuple[Sides, ...]] = ()  # choices of which a deck gives one side
     may_lack: ClassVar[tuple[str, ...]] = ()  # fields of these choices that a deck may leave out
+    needs: ClassVar[Mapping[str, str]] = {}  # fields that have a meaning beside another field alone
+    defaults: ClassVar[
+        Mapping[str, float]
+    ] = {}  # SI values of fields left out, beside those of a class of the model
 
 
 def needed(meaning: str) -> Any:

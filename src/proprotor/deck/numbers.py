@@ -59,8 +59,9 @@ def _numbers(section: Section, path: str = "") -> Iterator[tuple[str, Datum]]:
 
 
 def _per_second(number: Datum, rotor_speed: float) -> Datum:
-    """Return a frequency per revolution in rad/s: n per revolution are n Ω, with the Ω of the frequency's file."""
-    if number.unit != PER_REV:
+    """Return a frequency in rad/s, with the rotor speed Ω of its file: n per revolution are n Ω."""
+    if number.form != "frequency":
         return number
     own = rotor_speed if number.rotor_speed is None else number.rotor_speed
-    return replace(number, si=number.si * own, unit="rad/s", rotor_speed=own)
+    si = number.si * own if number.unit == PER_REV else number.si
+    return replace(number, si=si, unit="rad/s", rotor_speed=own)

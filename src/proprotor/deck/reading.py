@@ -45,15 +45,26 @@ def read_quantity(raw: Any, unit: str, bound: Bound = ANY) -> Datum:
 def read_tangent(raw: Any) -> Datum:
     """Return a plain number, or the tangent of an angle that is given instead: -0.268 for ``"-15 deg"``."""
     try:
-        return read_quantity(raw, "")
+        return replace(read_quantity(raw, ""), form="tangent")
     except InputError as error:
         if error.field:
             raise
         try:
             angle = read_quantity(raw, "rad", BELOW_QUARTER_TURN)
         except InputError as of_angle:
-            raise (of_angle if of_angle.rule == BELOW_QUARTER_TURN.rule else error) from None
-    return replace(angle, si=math.tan(angle.si), unit="")
+            if of_angle.rule == BELOW_QUARTER_TURN.rule:
+                raise
+            raise InputError("", error.value, rule_of_tangent(error)) from None
+    return replace(angle, si=math.tan(angle.si), unit="", form="tangent")
+
+
+def rule_of_tangent(error: InputError) -> str:
+    """Return the rule that neither a number nor an angle keeps, by the error about the number."""
+    rule = f"must be {meaning('')}"
+    is_quantity = error.rule.startswith(rule)
+    return (
+        f'{rule}, or the angle of which it is the tangent, such as "-15 deg"' if is_quantity else error.rule
+    )
 
 
 def read_count(raw: Any, least: int) -> Datum:
@@ -92,12 +103,13 @@ def read_frequency(raw: Any, bound: Bound = NOT_NEGATIVE) -> Datum:
     table = as_table(raw, ("value",))
     value = table["value"]
     if not isinstance(value, str) or not value.endswith("/rev"):
-        return read_quantity(raw, "rad/s", bound)
+        return replace(read_quantity(raw, "rad/s", bound), form="frequency")
     try:
         found = datum(table, str(value), _bounded(value.removesuffix("/rev"), "", bound), PER_REV)
     except InputError as error:
         raise InputError(error.field, value, error.rule) from None
-    return replace(found, rotor_speed=value.rotor_speed) if isinstance(value, PerRevolution) else found
+    rotor_speed = value.rotor_speed if isinstance(value, PerRevolution) else None
+    return replace(found, rotor_speed=rotor_speed, form="frequency")
 
 
 def read_file(raw: Any) -> Datum:

@@ -132,6 +132,7 @@ class AirfoilSection(Section):
         "table_name",
         "table_reynolds",
     )
+    needs: ClassVar[Mapping[str, str]] = {"blend": "region_ends"}
 
     lift_slope: fields.Slopes = optional("Slope of the lift coefficient with the angle of attack.")
     zero_lift_angle: fields.Angles = optional("Angle of attack without lift.")
@@ -377,6 +378,7 @@ class OperationSection(Section):
 
     alternatives: ClassVar[tuple[Sides, ...]] = AIR_ALTERNATIVES
     may_lack: ClassVar[tuple[str, ...]] = ("temperature_offset",)
+    defaults: ClassVar[Mapping[str, float]] = {"temperature_offset": 0.0}
 
     rotor_speed: fields.RotorSpeed = needed("Rotor speed Ω.")
     density: fields.Density = optional("Air density; 0 for a vacuum.")

@@ -43,6 +43,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
@@ -95,6 +96,8 @@ class AssumedShapeSection(WingAerodynamicsSection):
 
 class ModeSection(Section):
     """A normal mode: its generalised mass, and the hub's motion per unit of its coordinate, 0 if left out."""
+
+    defaults: ClassVar[Mapping[str, float]] = dict.fromkeys(HUB_AXES, 0.0)
 
     name: fields.Name = needed("Name of the mode in all results.")
     coordinate: Literal["length", "angle"] = needed("Whether the mode's coordinate is a length or an angle.")
@@ -200,6 +203,7 @@ class BeamWingSection(_WingSection):
     may_lack: ClassVar[tuple[str, ...]] = tuple(
         name for choice in STIFFNESS_ALTERNATIVES for side in choice for name in side
     )
+    defaults: ClassVar[Mapping[str, float]] = {factor: 1.0 for (factor,), _ in STIFFNESS_ALTERNATIVES}
 
     kind: Literal["beam-wing"] = needed("A wing of beam elements.")
     rotor_mass: fields.MassOrNone = optional("Mass of the rotor model at the hub, which the modes include.")
@@ -452,6 +456,8 @@ class UniversalSection(Section):
 
 class PivotSection(Section):
     """A rigid shaft that pitches and yaws about a point behind the hub; damping is 0 if left out."""
+
+    defaults: ClassVar[Mapping[str, float]] = {"pitch_damping": 0.0, "yaw_damping": 0.0}
 
     kind: Literal["pivot"] = needed("A shaft on a pivot.")
     includes_rotor: fields.IncludesRotor = needed(_HELD)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,8 @@ from proprotor.control.control_loop import ControlLoop
 from proprotor.datum import Datum
 from proprotor.deck.build import C, assemble
 from proprotor.deck.build_control import IN_PYTHON, law_warnings, numbers_of_loops
+from proprotor.deck.input_values import input_values
+from proprotor.deck.left_out import number_left_out
 from proprotor.deck.numbers import numbers_of
 from proprotor.errors import InputError, unknown_name
 from proprotor.model.configuration import Configuration
@@ -92,6 +94,32 @@ def check_input(path: str, known: Collection[str]) -> None:
         raise InputError(path, None, unknown_name(path, known, "input"))
 
 
+def inputs_at(case: Configuration, paths: Iterable[str]) -> dict[str, Datum]:
+    """Return the numbers of a case at some paths, those that its deck leaves out at their defaults.
+
+    Parameters
+    ----------
+    case : Case
+        A case built from a deck.
+    paths : iterable of str
+        See `design_inputs`; also fields that the deck leaves out and that have a number as default, such as
+        ``rotor.kinematic_pitch_flap_coupling``.
+
+    Returns
+    -------
+    dict of str to Datum
+        In the order of the paths.
+
+    Raises
+    ------
+    InputError
+        For an unknown path, with the nearest known one; for a field that cannot vary, with what the deck must give
+        first; and when the case was not built from a deck.
+    """
+    known = design_inputs(case)
+    return {path: known[path] if path in known else number_left_out(case.deck, path, known) for path in paths}
+
+
 def vary(case: C, values: Mapping[str, Any]) -> C:
     """Return the case with other values for some numbers of its deck.
 
@@ -103,9 +131,10 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
     ----------
     case : Case
     values : mapping of str to float, array, text, pint quantity or xarray.DataArray
-        By path, see `design_inputs`: numbers in SI; text such as "1.5 deg", quantities, and data arrays with an
-        attribute ``units`` are converted. Arrays broadcast with each other and with the airspeeds of
-        `Case.linearize`. Complex numbers are allowed, for derivatives by a complex step.
+        By path, see `inputs_at`: numbers in SI; text such as "1.5 deg", quantities, and data arrays with an
+        attribute ``units`` are converted, an angle to its tangent where a deck takes both. Arrays broadcast with each
+        other and with the airspeeds of `Case.linearize`. Complex numbers are allowed, for derivatives by a complex
+        step.
 
     Returns
     -------
@@ -117,10 +146,9 @@ def vary(case: C, values: Mapping[str, Any]) -> C:
     InputError
         For an unknown path, with the nearest known one, or a value that is not physical.
     """
-    known, numbers = design_inputs(case), dict(case.given)
+    known, numbers = inputs_at(case, values), dict(case.given)
     for path, value in values.items():
-        check_input(path, known)
-        number = _number(path, value, known[path].unit)
+        number = _number(path, value, known[path])
         varied = replace(known[path], written=_written(number, known[path].unit), si=number[()])
         if (entry := _ENTRY.fullmatch(path)) is None:
             numbers[path] = varied
@@ -162,12 +190,10 @@ def _same(one: Any, other: Any) -> bool:
     return type(one) is type(other) and np.shape(one) == np.shape(other) and bool(np.all(one == other))
 
 
-def _number(path: str, value: Any, unit: str) -> np.ndarray:
+def _number(path: str, value: Any, known: Datum) -> np.ndarray:
     """Return the SI value of a number as an array, of floats or complex numbers."""
     if has_own_unit(value):
-        from proprotor.units import values_in_si  # here, because pint takes long to import
-
-        value = values_in_si(value, unit, path)
+        value = input_values(path, value, known)
     number = np.asarray(value)
     if number.dtype.kind not in "fciu":
         raise InputError(path, value, "must be a number or an array of numbers")

@@ -38,7 +38,7 @@ except ImportError as missing:
 from numpy.typing import NDArray
 
 from proprotor.case import Case, load_case
-from proprotor.deck.vary import design_inputs
+from proprotor.deck.vary import inputs_at
 from proprotor.errors import InputError, check_known
 from proprotor.model.stamp import one_density
 from proprotor.stability.boundary import Boundary
@@ -82,7 +82,7 @@ class _OfCase(om.ExplicitComponent):  # type: ignore[misc]
         case = self.options["case"]
         self._case = case if isinstance(case, Case) else load_case(case)
         self._paths = self._paths_by_name()
-        numbers = design_inputs(self._case)
+        numbers = inputs_at(self._case, self._paths.values())
         for name, path in self._paths.items():
             number = numbers[path]
             self.add_input(name, float(number.si), units=_UNITS.get(number.unit, number.unit), desc=path)
@@ -95,9 +95,7 @@ class _OfCase(om.ExplicitComponent):  # type: ignore[misc]
         """Return the paths of the inputs by the names of their variables."""
         given = self._listed("inputs", "paths")
         paths = dict(given) if isinstance(given, Mapping) else {variable_name(path): path for path in given}
-        known = design_inputs(self._case)
-        for path in paths.values():
-            check_known("inputs", path, known, "input")
+        inputs_at(self._case, paths.values())  # refuses what is no input
         return paths
 
     def _listed(self, option: str, names: str) -> Any:
@@ -259,9 +257,7 @@ class WhirlFlutter(_OfCase):
 
     def _flutter_partials(self, case: Case, inputs: Mapping[str, NDArray[np.float64]], partials: Any) -> None:
         boundary = self._found.get(self._key(inputs)) or self._boundary(case)
-        known = design_inputs(case)
-        numbers = {path: known[path] for path in self._paths.values()}
-        rates = at_boundary(case, boundary, numbers, self._model_options)
+        rates = at_boundary(case, boundary, inputs_at(case, self._paths.values()), self._model_options)
         for name, path in self._paths.items():
             own = rates.sel(input=path)
             partials["flutter_speed", name] = own.derivative.item()

@@ -11,7 +11,7 @@ from proprotor.model.doubts import MARK, doubts_along, footnotes
 from proprotor.model.provenance import reservations
 from proprotor.plots import small_print
 from proprotor.plots.line_of_sweep import Positions, written
-from proprotor.plots.style import LABEL_SIZE, TITLE_SIZE
+from proprotor.plots.style import LABEL_SIZE, TITLE_SIZE, UNSTABLE, white_box
 from proprotor.typing import Axes, Dataset, Figure
 
 Limits = tuple[float, float]  # ends of an axis
@@ -61,6 +61,13 @@ def grid(ax: Axes) -> None:
     """Draw a faint grid behind everything."""
     ax.grid(color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
+
+
+def name_unstable(ax: Axes) -> None:
+    """Name the shaded ground below zero damping; lines that pass behind the word leave it readable."""
+    ground = white_box(1.0) | {"facecolor": UNSTABLE}
+    place: dict[str, Any] = {"xycoords": "axes fraction", "xytext": (4, 4), "textcoords": "offset points"}
+    ax.annotate("unstable", (0, 0), fontsize=LABEL_SIZE, color="0.3", bbox=ground, zorder=3, **place)
 
 
 def points_per_pixel(ax: Axes) -> float:

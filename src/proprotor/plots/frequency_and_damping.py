@@ -9,13 +9,22 @@ from numpy.typing import ArrayLike
 
 from proprotor.model.stamp import density_of
 from proprotor.plots import small_print
-from proprotor.plots.canvas import Limits, along, axes_or_new, note, say_origin, two_axes, write_title
+from proprotor.plots.canvas import (
+    Limits,
+    along,
+    axes_or_new,
+    name_unstable,
+    note,
+    say_origin,
+    two_axes,
+    write_title,
+)
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, written
 from proprotor.plots.mode_lines import draw_modes, earlier_sweeps, names_of_sweeps
 from proprotor.plots.onsets import boundaries_of
 from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
-from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, UNSTABLE, in_style, white_box
+from proprotor.plots.style import SMALL_SIZE, UNSTABLE, in_style, white_box
 from proprotor.tables.points import DAMPING, Points, Quantity
 from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps
 from proprotor.typing import Array, Axes, Dataset, Figure
@@ -258,7 +267,7 @@ def _mark_instability(ax: Axes, sweep: Dataset, line: Positions) -> None:
     if found:
         note(ax, "Circles: boundaries, interpolated between points of the sweep")
     if not any(text.get_text() == "unstable" for text in ax.texts):
-        ax.text(0.01, 0.015, "unstable", transform=ax.transAxes, fontsize=LABEL_SIZE, color="0.3")
+        name_unstable(ax)
 
 
 def _name_onsets(ax: Axes, onsets: list[Any], line: Positions) -> None:

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.deck.vary import check_input, design_inputs
+from proprotor.deck.input_values import input_values
+from proprotor.deck.vary import inputs_at
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
 from proprotor.model import stamp
@@ -34,7 +35,7 @@ from proprotor.stability.kinds import FLUTTER, flies_free
 from proprotor.stability.matching import Spectrum, conjugate, match_modes
 from proprotor.stability.parameter_lines import AIRSPEED
 from proprotor.typing import Array, Dataset
-from proprotor.units import SEA_LEVEL_DENSITY, in_metres_per_second, values_in_si
+from proprotor.units import SEA_LEVEL_DENSITY, in_metres_per_second
 
 _FEWEST = 51  # airspeeds of a value, at least about: wide steps are divided
 
@@ -95,7 +96,7 @@ def boundary_against(
         np.broadcast_to(varied.operation.rotor_speed, values.shape),
         {"units": "rad/s"},
     )
-    dataset[path].attrs["units"] = design_inputs(case)[path].unit
+    dataset[path].attrs["units"] = inputs_at(case, [path])[path].unit
     own_stamp = stamp.of_case(case, options, (path,))
     return dataset.assign_attrs(own_stamp | {"level": level, "eigen_solves": solves})
 
@@ -105,9 +106,7 @@ def _input_of(case: Configuration, against: Mapping[str, ArrayLike]) -> tuple[st
     if len(against) != 1:
         raise InputError("against", ", ".join(against), "must be one input and its values")
     (path, given), *_ = against.items()
-    known = design_inputs(case)
-    check_input(path, known)
-    values = np.atleast_1d(values_in_si(given, known[path].unit, path))
+    values = np.atleast_1d(input_values(path, given, inputs_at(case, [path])[path]))
     if values.ndim != 1 or not values.size or not np.all(np.diff(values) > 0):
         raise InputError(path, np.array2string(values, threshold=6), "must be a list of values that rise")
     return path, values

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.deck.vary import check_input, design_inputs
+from proprotor.deck.input_values import input_values
+from proprotor.deck.vary import inputs_at
 from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
@@ -25,7 +26,7 @@ from proprotor.stability.crossings import Search
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.stability.root_error import growth, growth_error, roots
 from proprotor.typing import Array, Dataset
-from proprotor.units import in_metres_per_second, values_in_si
+from proprotor.units import in_metres_per_second
 
 _AT_ONCE = 4096  # points of one batch
 _OFF_ZERO = 1e-6  # of the largest growth: no corner is nearer to zero while lines are joined
@@ -125,7 +126,7 @@ def stability_map(
         found.attrs[AIRSPEED] = float(in_metres_per_second(airspeed, case.operation.density))
     found.attrs["eigen_solves"] = int(np.isfinite(largest).sum()) + solves
     for name in names:
-        found[name].attrs["units"] = "m/s" if name == AIRSPEED else design_inputs(case)[name].unit
+        found[name].attrs["units"] = "m/s" if name == AIRSPEED else inputs_at(case, [name])[name].unit
     return found
 
 
@@ -133,14 +134,12 @@ def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str
     """Return the names and the values, in SI, of both axes."""
     if len(axes) != 2:
         raise InputError("axes", ", ".join(axes), "must be two inputs")
-    known, found = design_inputs(case), {}
+    known, found = inputs_at(case, [name for name in axes if name != AIRSPEED]), {}
     for name, given in axes.items():
-        if name != AIRSPEED:
-            check_input(name, known)
         values = (
             in_metres_per_second(given, stamp.one_density(case, axes))
             if name == AIRSPEED
-            else values_in_si(given, known[name].unit, name)
+            else input_values(name, given, known[name])
         )
         if values.ndim != 1 or len(values) < 2 or not np.all(np.diff(values) > 0):
             raise InputError(name, values.tolist(), "must be a list of values that rise")

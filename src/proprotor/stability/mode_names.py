@@ -32,7 +32,7 @@ import numpy as np
 
 from proprotor.model.first_order import held_coordinates, some_points
 from proprotor.model.linear_model import LinearModel
-from proprotor.rotor.motions import HUB, motions, name_list
+from proprotor.rotor.motions import HUB, SECOND, motions, name_list
 from proprotor.stability.assignment import best_assignment
 from proprotor.stability.matching import Modes
 from proprotor.stability.modes import coordinate_motion
@@ -58,16 +58,22 @@ class Moving(NamedTuple):
         name that two real roots have stands twice.
     shares : array (..., names, states)
         Participation of each name's motion in each state, 0 to 1; NaN at failed points.
+    is_second : array (..., states) of bool
+        Whether a state is the second of two real roots with one name: the one that decays faster, or grows less.
     """
 
     known: list[str]
     place: Array
     shares: Array
+    is_second: Array
 
     @property
     def names(self) -> Array:
-        """The name of each state (..., states), as text; empty at failed points."""
-        return np.array([*self.known, ""], dtype=object)[self.place]
+        """The name of each state (..., states), as text, different for all modes of a point; empty at failed points."""
+        several = [*self.known, *(name + SECOND for name in self.known), ""]
+        return np.array(several, dtype=object)[
+            np.where(self.is_second, len(self.known) + self.place, self.place)
+        ]
 
     @property
     def share(self) -> Array:
@@ -106,7 +112,21 @@ def moving(model: LinearModel, values: Array, left: Array, right: Array) -> Movi
         mode = mode_of_states(roots, upper)
         place[points] = np.take_along_axis(named_after(part, roots, upper, taken).T, mode, 1)
         shares[points] = np.moveaxis(np.take_along_axis(taken, mode.T[None], 1), -1, 0)
-    return Moving(known, place.reshape(values.shape), shares.reshape(*values.shape[:-1], len(known), states))
+    place = place.reshape(values.shape)
+    shares = shares.reshape(*values.shape[:-1], len(known), states)
+    return Moving(known, place, shares, _second_roots(place, values))
+
+
+def _second_roots(place: Array, values: Array) -> Array:
+    """Return whether states (..., states) are the second of two real roots with one name."""
+    of_real = np.where(values.imag == 0, place, -1)
+    order = np.lexsort((-values.real, of_real), axis=-1)
+    ordered = np.take_along_axis(of_real, order, -1)
+    second = np.zeros(place.shape, dtype=bool)
+    second[..., 1:] = (ordered[..., 1:] == ordered[..., :-1]) & (ordered[..., 1:] >= 0)
+    found = np.empty(place.shape, dtype=bool)
+    np.put_along_axis(found, order, second, -1)
+    return found
 
 
 def named_after(model: LinearModel, values: Array, upper: Array, shares: Array) -> Array:

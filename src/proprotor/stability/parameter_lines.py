@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from proprotor.deck.vary import check_input, design_inputs
+from proprotor.deck.input_values import input_values
+from proprotor.deck.vary import inputs_at
 from proprotor.deck.vary import vary as vary_case
 from proprotor.errors import InputError
 from proprotor.model import stamp
@@ -26,7 +27,7 @@ from proprotor.needs import check_memory
 from proprotor.rotor.options import parse_options
 from proprotor.rotor.trim import Trim
 from proprotor.typing import Array
-from proprotor.units import in_metres_per_second, values_in_si
+from proprotor.units import in_metres_per_second
 
 _Inputs = Callable[[Array], dict[str, Array]]  # positions (k,) along a line to the inputs there, by name
 
@@ -137,10 +138,8 @@ def _line_of_input(
     if len(vary) != 1:
         raise InputError("vary", ", ".join(vary), "must be one input to sweep")
     (path, given), *_ = vary.items()
-    known = design_inputs(case)
-    check_input(path, known)
-    unit = known[path].unit
-    values = values_in_si(given, unit, path)
+    number = inputs_at(case, [path])[path]
+    values = input_values(path, given, number)
     if len(speed) != 1 or values.ndim != 1:
         raise InputError("vary", path, "needs a list of values, and one airspeed")
     _check_points(path, values.size)
@@ -149,7 +148,7 @@ def _line_of_input(
     def inputs(values: Array) -> dict[str, Array]:
         return {path: values, AIRSPEED: np.broadcast_to(speed, np.shape(values))}
 
-    return _line(case, options, values, inputs, path, unit)
+    return _line(case, options, values, inputs, path, number.unit)
 
 
 # The approach --------------------------------------------------------------------------------------------------------
@@ -206,7 +205,7 @@ def _approach(
         return replace(line, positions=np.linspace(start, end, _points_over(abs(end - start), tip)))
     assert line.inputs is not None  # of a line of a case
     speed = float(line.inputs(reachable[:1])[AIRSPEED][0])
-    own = float(design_inputs(case)[line.name].si)
+    own = float(inputs_at(case, [line.name])[line.name].si)
     end = _nearest(reachable, own)
     first, second = abs(speed - start) / tip, abs(end - own) / max(abs(own), abs(end), 1e-300)
 

@@ -144,10 +144,12 @@ def _parts(line: Array, count: int) -> list[Array]:
 
 def _together(parts: list[Solved]) -> Solved:
     """Return the points of some results as one."""
-    texts = (np.concatenate(own) for own in zip(*(part[1:5] for part in parts), strict=True))
+    works, reason, warning, missing = (
+        np.concatenate(own) for own in zip(*(part[1:5] for part in parts), strict=True)
+    )
     found = [part.points for part in parts if part.points is not None]
     points = found[0].joined(*found[1:]) if found else None
-    return Solved(points, *texts, is_compiled=any(part.is_compiled for part in parts))
+    return Solved(points, works, reason, warning, missing, any(part.is_compiled for part in parts))
 
 
 def _solved(

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from proprotor.datum import Datum
-from proprotor.deck.vary import design_inputs
+from proprotor.deck.vary import design_inputs, inputs_at
 from proprotor.deck.vary import vary as vary_case
-from proprotor.errors import InputError, check_known
+from proprotor.errors import InputError
 from proprotor.model import stamp
 from proprotor.model.configuration import Configuration
 from proprotor.model.linear_model import LinearModel
@@ -142,10 +142,7 @@ def chosen_inputs(case: Configuration, wrt: Sequence[str] | None) -> dict[str, D
     """
     if wrt is not None and not len(wrt):
         return {}
-    known = design_inputs(case)
-    for path in wrt or ():
-        check_known("wrt", path, known, "input")
-    return known if wrt is None else {path: known[path] for path in wrt}
+    return design_inputs(case) if wrt is None else inputs_at(case, wrt)
 
 
 def eigenvalue_rates(

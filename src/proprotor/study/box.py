@@ -10,7 +10,7 @@ import numpy as np
 
 from proprotor.case import Case
 from proprotor.datum import Datum
-from proprotor.deck.vary import check_input, design_inputs
+from proprotor.deck.vary import inputs_at
 from proprotor.errors import InputError
 from proprotor.study import sampling
 from proprotor.study.input_ranges import LogRange, Range, read_distribution
@@ -81,9 +81,8 @@ def box_of(case: Case, limits: Mapping[str, Any]) -> Box:
     """
     if not limits:
         raise InputError("box", None, "must have at least one input with its limits")
-    known, ends = design_inputs(case), []
+    known, ends = inputs_at(case, limits), []
     for path, given in limits.items():
-        check_input(path, known)
         read = read_distribution(path, given, known[path])
         if not isinstance(read, Range | LogRange):
             raise InputError(
@@ -91,4 +90,4 @@ def box_of(case: Case, limits: Mapping[str, Any]) -> Box:
             )
         ends.append((read.low, read.high))
     low, high = np.array(ends, dtype=float).T
-    return Box({path: known[path] for path in limits}, low, high)
+    return Box(known, low, high)

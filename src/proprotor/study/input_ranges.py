@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sized
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from proprotor.datum import Datum
+from proprotor.deck.input_values import input_values
 from proprotor.errors import InputError
 from proprotor.typing import Array
 
@@ -123,9 +125,7 @@ def read_values(name: str, given: Any, known: Datum) -> Array:
     InputError
         For a value of another dimension than the input's, an array of several dimensions, or no value.
     """
-    from proprotor.units import values_in_si  # here, because pint takes long to import
-
-    values = values_in_si(given, known.unit, name)
+    values = input_values(name, given, known)
     if values.ndim > 1:
         raise InputError(name, f"array of shape {values.shape}", "must be a value or a list of values")
     if not values.size:
@@ -151,6 +151,8 @@ def read_distribution(name: str, given: Any, known: Datum) -> Any:
     if not is_pair:
         rule = "must be a pair of limits, a Range, LogRange, Normal or Relative, or a distribution of scipy.stats"
         raise InputError(name, given, rule)
+    if isinstance(given, Normal):
+        known = replace(known, form="")  # the deviation of an angle has no tangent
     first, second = (float(read_values(name, value, known)) for value in given)
     if isinstance(given, Normal):
         if not second > 0:
@@ -167,6 +169,8 @@ def _relative(name: str, given: Relative, known: Datum) -> Range | LogRange:
     """Return the range between two multiples of the deck's number."""
     if not has_number(known):
         raise InputError(name, given, "must be given in absolute terms: the deck has no such number")
+    if known.si == 0:
+        raise InputError(name, given, "must be given in absolute terms: the number is 0")
     low, high = (float(factor) for factor in given[:2])
     if given.logarithmic:
         return LogRange(_above_zero(name, low) * known.si, _above_zero(name, high) * known.si)

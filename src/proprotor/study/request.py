@@ -12,6 +12,7 @@ from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.case import Case
 from proprotor.compiled.library import compiler_version
+from proprotor.deck.vary import inputs_at
 from proprotor.errors import InputError, check_known
 from proprotor.files.fingerprint import fingerprint
 from proprotor.model import stamp
@@ -148,9 +149,8 @@ def requested(
     computed = {**options, "backend": backend}
     parse_options(case.model_options(computed))
     plan = as_plan(inputs)
-    from proprotor.deck.vary import design_inputs
-
-    known = design_inputs(case) if set(plan.inputs) - {AIRSPEED} else {}
+    varied = [path for path in paths_of(plan.inputs) if path != AIRSPEED]
+    known = inputs_at(case, varied) if varied else {}
     designs = plan.resolve(known)
     own = AIRSPEED in plan.inputs
     if own == (airspeed is not None):

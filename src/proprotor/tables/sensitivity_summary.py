@@ -6,7 +6,7 @@ from typing import Any
 
 from proprotor.case import Case
 from proprotor.datum import deck_unit
-from proprotor.deck.vary import design_inputs
+from proprotor.deck.vary import inputs_at
 from proprotor.model.doubts import marked
 from proprotor.tables.digits import significant
 from proprotor.typing import Dataset
@@ -34,7 +34,7 @@ def sensitivity_records(case: Case, found: Dataset, of: str) -> list[dict[str, A
         Value, derivatives and status of each input, with units in the names.
     """
     read_in, factor = READ_IN[of]
-    numbers = design_inputs(case)
+    numbers = inputs_at(case, found.input.values.tolist())
     records = []
     for place, path in enumerate(found.input.values.tolist()):
         unit, size = deck_unit(numbers[path])
