@@ -66,7 +66,7 @@ FAIL = {
         "did you mean rotor.precone?",
     ),
     "envelope": ((*ENVELOPE, "--only", "heavy"), "variants = heavy: unknown variant"),
-    "sensitivity": (("xv15-uncoupled", "--wrt", "rotor.precon"), "wrt = rotor.precon: unknown input"),
+    "sensitivity": (("xv15-uncoupled", "--wrt", "rotor.precon"), "rotor.precon: unknown input"),
     "attribution": (("xv15-uncoupled", "--speed", "300 kt", "--mode", "bean"), "did you mean beam?"),
     "study": (
         ("xv15-uncoupled", "--vary", "rotor.precone", "--speed", "200 kt"),

@@ -150,3 +150,16 @@ def test_one_point_is_that_of_a_batch_and_a_point_that_fails_spoils_no_other():
         np.testing.assert_array_equal(np.delete(found, 3, 0), np.delete(expected, 3, 0))
         np.testing.assert_array_equal(getattr(alone, name), expected[2])
     assert alone.trim.thrust == batch.trim.thrust[2] and alone.trim.iterations == batch.trim.iterations[2]
+
+
+def test_derivatives_by_a_complex_step_have_numpys_trims_and_reasons():
+    case = pp.load_case("xv15-uncoupled").vary({"rotor.precone": np.linspace(0.0, 0.05, 7)})
+    speeds = np.array([0.0, 60.0, 100.0, 150.0, 190.0, 240.0, 400.0])  # the first and the last have no trim
+    one, other = (case.linearize(speeds + 1e-30j, backend=backend) for backend in ("numpy", "compiled"))
+    assert (one.trim.reason == other.trim.reason).all() and (one.trim.warning == other.trim.warning).all()
+    assert (one.trim.reason != "").tolist() == [True, *[False] * 5, True]
+    for name in "MCK":
+        for part in (np.real, np.imag):
+            expected = part(getattr(one, name))
+            scale = np.nanmax(np.abs(expected))
+            np.testing.assert_allclose(part(getattr(other, name)), expected, rtol=0, atol=1e-12 * scale)

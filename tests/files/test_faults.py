@@ -41,13 +41,19 @@ def run(*arguments, command=main):
 
 @contextmanager
 def full_disk(size=500):
-    """No file of this process can grow beyond so many bytes; Python is told, not killed."""
+    """No file of this process can grow beyond so many bytes; Python is told, not killed.
+
+    Modules that are imported meanwhile are not kept compiled: the import system does not notice that their files
+    end early, and all later processes would read them.
+    """
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    compiles, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        sys.dont_write_bytecode = compiles
 
 
 def content(folder):

@@ -48,6 +48,9 @@ CASES = {
 @pytest.fixture
 def with_shapes(monkeypatch):
     """Set the number of shape functions, polynomials or a pair of states at every station of a rotor."""
+    monkeypatch.setattr(
+        ROTOR_MODEL, "_design", ROTOR_MODEL._design.__wrapped__
+    )  # the kept one has its own number
 
     def set_shapes(count, shapes=None):
         monkeypatch.setattr(ROTOR_MODEL, "lag_coordinates", lambda: motions.lag_coordinates(count))

@@ -6,7 +6,6 @@ b²π⁸ (1/18 − 1/50) that of x1 with x3.
 """
 
 import json
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ import xarray as xr
 
 import proprotor as pp
 from proprotor import sampling
+from proprotor.datum import Datum
 from proprotor.errors import InputError
 from proprotor.exchange.netcdf import load_results, save_results
 from proprotor.study.study import study
@@ -22,7 +22,7 @@ from proprotor.study.variables import STABLE, UNSTABLE
 from proprotor.tables.percentiles import percentile_text
 
 A, B = 7.0, 0.1
-KNOWN = {f"x{place}": SimpleNamespace(si=1.0, unit="") for place in (1, 2, 3)}
+KNOWN = {f"x{place}": Datum("1", 1.0, "", "assumed", "") for place in (1, 2, 3)}
 
 
 def ishigami(x1, x2, x3):
