@@ -27,6 +27,7 @@ from tests.explore_server import serving
 KT = 1852 / 3600
 DEG = np.pi / 180
 CHORD = "support.modes[chord].frequency"
+COUPLING = "rotor.kinematic_pitch_flap_coupling"  # which the deck leaves out
 
 
 @pytest.fixture(scope="module")
@@ -213,6 +214,10 @@ def test_moving_a_slider_moves_what_is_drawn_and_told(page, case):
         ("rotor.precon = 3 deg", "did you mean rotor.precone"),
         ("<script> = 3 deg", "&lt;script&gt;"),
         ("nonsense", "unknown"),
+        ("rotor.precone = 1:3:1 deg", "must be one number"),
+        ("rotor.precone", "must be a number and a unit"),
+        (f"{COUPLING} = 95 deg", "must lie within 90 deg"),
+        ("rotor.frequencies.flap = 1/rev", "rotor.frequencies.flap"),
     ],
 )
 def test_what_cannot_be_is_told_on_the_page(page, text, told):
@@ -232,6 +237,29 @@ def test_a_value_is_set_exactly(page, case):
     assert page.chosen.values[CHORD] == pytest.approx(0.9 * case.operation.rotor_speed)
     page.inputs.exact.value = "rotor.control_stiffness = 40000 ft*lbf/rad"
     assert page.inputs.sliders["rotor.control_stiffness"].end == pytest.approx(40000)
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "value"),
+    [
+        ("rotor.pitch_gimbal_coupling = -12 deg", "rotor.pitch_gimbal_coupling", np.tan(-12 * DEG)),
+        (f"{COUPLING} = 10 deg", COUPLING, np.tan(10 * DEG)),
+        (f"{COUPLING} = 0.2", COUPLING, 0.2),
+        (f"{CHORD} = 42 rad/s", CHORD, 42.0),
+        (f"{CHORD} = 6 Hz", CHORD, 12 * np.pi),
+    ],
+)
+def test_a_value_is_read_as_in_a_deck_which_may_leave_the_input_out(page, case, text, path, value, tmp_path):
+    page.inputs.exact.value = text
+    page.update()
+    assert page.message.text == ""
+    assert page.chosen.values == {path: pytest.approx(value, rel=1e-12)}
+    assert path in page.inputs.choice.value and path in page.inputs.choice.options
+    wanted = live_modes(case, page.chosen.airspeeds, {path: value})
+    assert f"{wanted.flutter.start / KT:.1f} KTAS" in page.readout.text
+    place = tmp_path / "found.toml"
+    place.write_text(altered_deck("xv15-uncoupled", case, page.chosen.values), encoding="utf-8")
+    assert pp.load_case(place).given[path].si == pytest.approx(value, rel=1e-10)
 
 
 def test_a_switch_of_the_model_is_that_of_the_engine(page, case):

@@ -77,6 +77,32 @@ def test_the_cell_shows_a_frame_and_the_case_comes_back(case):
     asyncio.run(asked())
 
 
+def test_what_was_varied_comes_along_though_the_deck_leaves_it_out(case):
+    varied = case.vary({"rotor.kinematic_pitch_flap_coupling": "10 deg", "rotor.precone": "3 deg"})
+
+    async def asked():
+        async with shown(varied, "300:400:20kt") as page:
+            assert await status(page.address) == 200
+            return page._shown.chosen.values, page.case
+
+    values, found = asyncio.run(asked())
+    assert values == {
+        "rotor.kinematic_pitch_flap_coupling": pytest.approx(np.tan(10 * DEG)),
+        "rotor.precone": pytest.approx(3 * DEG),
+    }
+    assert found.rotor.kinematic_pitch_flap_coupling == pytest.approx(np.tan(10 * DEG))
+
+
+def test_control_loops_that_no_deck_has_are_not_left_out_in_silence(case):
+    loop = pp.ControlLoop(name="hold", sensors="x rate", inputs="cyclic_1c", gain=-1e-3)
+
+    async def asked():
+        with pytest.raises(pp.InputError, match="control loops in the deck"):
+            pp.explore(case.with_control(loop))
+
+    asyncio.run(asked())
+
+
 def test_outside_a_notebook_the_message_names_the_command(case):
     with pytest.raises(pp.InputError, match=r"needs a notebook.*proprotor explore"):
         pp.explore(case)

@@ -19,6 +19,8 @@ from proprotor.units import speeds
 if TYPE_CHECKING:
     from bokeh.document import Document
 
+    from proprotor.explore.turns import Turns
+
 _POINTS = 60  # airspeeds by default
 
 
@@ -76,9 +78,9 @@ def explore(
         reason = error.strerror or error
         raise click.ClickException(f"--port = {port}: cannot listen on {ADDRESS} ({reason})") from None
 
-    def put_on(document: Document) -> None:
+    def put_on(document: Document, turns: Turns) -> None:
         options = output.options_in_force(case, chosen)
-        ExplorePage(case, request.name, drawn, request.settings, options).put_on(document)
+        ExplorePage(case, request.name, drawn, request.settings, options).put_on(document, turns)
 
     def ready(address: str) -> None:
         if as_json:

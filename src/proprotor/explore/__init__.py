@@ -16,6 +16,7 @@ In come a case and the settings of a reader; out go curves and sentences on the 
     post            what changes with each move, sent as one message
     altered_deck    the settings of the page as a deck of its own
     saves           numbers and pictures to keep
+    turns           the order of what readers wait for: curves before maps
     page            the page, put together
     server          a server of the page for this machine alone
     notebook        the page in a notebook
@@ -26,4 +27,4 @@ the rooms above it, from `errors` to `plots`. What is in Bokeh, `page` and `serv
 import; import them when the page is wanted.
 """
 
-__all__ = ["analysis", "explore", "page", "server"]
+__all__ = ["analysis", "explore", "page", "server", "turns"]

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from bokeh.layouts import column
 from bokeh.models.widgets import MultiChoice, Slider, TextInput
 
-from proprotor.deck.vary import design_inputs
+from proprotor.deck.input_values import input_values
+from proprotor.deck.vary import design_inputs, inputs_at
 from proprotor.errors import InputError
 from proprotor.explore.chosen import Chosen
 from proprotor.explore.controls import SIDE, airspeed_slider, input_slider
 from proprotor.explore.inputs import SliderInput, first_inputs, slider_input
 from proprotor.stability.parameter_lines import AIRSPEED
 from proprotor.typing import Array
-from proprotor.units import KNOT, speeds, to_si
+from proprotor.units import KNOT, speeds
 
 
 class InputPanel:
@@ -67,7 +68,7 @@ class InputPanel:
 
     def set_values(self, values: Mapping[str, float]) -> None:
         """Set inputs, SI values by path."""
-        self.choice.value = list(dict.fromkeys([*self.choice.value, *values]))
+        self._choose(values)
         for path, value in values.items():
             self._move(path, value / self.inputs[path].factor)
 
@@ -79,6 +80,11 @@ class InputPanel:
             slider.update(start=given.low, end=given.high, value=given.value)
         self.range.value = _in_knots(self.chosen.first_airspeeds)
         self._quiet = False
+
+    def _choose(self, paths: Collection[str]) -> None:
+        """Give inputs a slider, also those that the deck leaves out."""
+        for listed in ("options", "value"):
+            setattr(self.choice, listed, list(dict.fromkeys([*getattr(self.choice, listed), *paths])))
 
     def _show_sliders(self, paths: list[str]) -> None:
         for path in paths:
@@ -139,15 +145,11 @@ class InputPanel:
         self._tell()
 
     def _set_input(self, path: str, written: str) -> None:
-        """Set an input to a number with its unit."""
-        given = slider_input(self.chosen.case, path)
-        if given.unit == "/rev" and written.endswith("/rev"):
-            value = to_si(written.removesuffix("/rev"), "")
-        else:
-            value = to_si(written, design_inputs(self.chosen.case)[path].unit) / given.factor
-        if path not in self.choice.value:
-            self.choice.value = [*self.choice.value, path]
-        self._move(path, value)
+        """Set an input to a number, in any form in which a deck may have the number."""
+        values = input_values(path, written, inputs_at(self.chosen.case, [path])[path])
+        if values.size != 1:
+            raise InputError(path, written, "must be one number")
+        self.set_values({path: values.item()})
 
     def _tell(self) -> None:
         if not self._quiet:

@@ -11,7 +11,7 @@ import numpy as np
 from proprotor.case import Case
 from proprotor.datum import deck_unit
 from proprotor.deck.describe import deck_fields, plain_path
-from proprotor.deck.vary import check_input, design_inputs
+from proprotor.deck.vary import design_inputs, inputs_at
 from proprotor.plots.input_names import short_name
 from proprotor.plots.line_of_sweep import written
 from proprotor.stability.parameter_lines import AIRSPEED
@@ -93,16 +93,14 @@ def first_inputs(case: Case) -> list[str]:
 
 
 def slider_input(case: Case, path: str) -> SliderInput:
-    """Return the slider of an input.
+    """Return the slider of an input, at its default for one that the deck leaves out.
 
     Raises
     ------
     InputError
-        For a path that is no input.
+        For a path that is no input, and a field that cannot vary in this deck.
     """
-    known = design_inputs(case)
-    check_input(path, known)
-    number = known[path]
+    number = inputs_at(case, [path])[path]
     unit, factor = deck_unit(number)
     value = float(f"{float(number.si) / factor:.10g}")  # free of the rounding of conversion
     low, high = (float(f"{end:.3g}") for end in _range(path, value, number.unit, factor))

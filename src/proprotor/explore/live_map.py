@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from bokeh.layouts import column
@@ -17,6 +18,7 @@ from proprotor.explore.drawings import Drawings
 from proprotor.explore.growth_plane import GrowthPlane, growth_plane
 from proprotor.explore.inputs import MapAxis, map_axis, slider_input
 from proprotor.explore.post import Post, Text
+from proprotor.explore.turns import Turns
 from proprotor.stability.parameter_lines import AIRSPEED
 from proprotor.units import KNOT, KTAS
 
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
 _RESTS = 250  # ms after the last move: where NumPy computes the map, the map waits for the slider to rest
 _Axes = tuple[MapAxis, MapAxis]
+_Draws = Iterator[Callable[[], None] | None]  # between parts of a map, what is to be drawn, if anything
 
 
 class LiveMap:
@@ -42,21 +45,32 @@ class LiveMap:
     def __init__(self, chosen: Chosen, drawings: Drawings, up: str) -> None:
         self.chosen, self.drawings = chosen, drawings
         self.document: Document | None = None
+        self._turns: Turns | None = None
         self.x, self.y, self.grid = map_selections(chosen.case, up)
         self.at: Slider = airspeed_of_map(chosen.case, chosen.airspeeds)
+        self.at.visible = self.airspeed is not None
         self.compared = True
         self.message = Text("map-message", sizing_mode="stretch_width")
         self.post = Post("map-post", drawings.filled, drawings.boundary, self.message)
-        self._parts: Iterator[None] | None = None  # of the map that is computed now
+        self._computing = False
         self._resting: Any = None  # Bokeh's callback that begins a map
         self._drawn: object = None  # the settings that the map shows
         self._drawn_deck: object = None  # the grid that the boundary of the deck was computed on
         for control in (self.x, self.y, self.grid, self.at):
-            control.on_change("value", lambda _, __, ___: self._begin())
+            control.on_change("value", lambda _, __, ___: self._choose())
 
     def controls(self) -> Any:
         """Return the controls, one above the other."""
         return column(self.x, self.y, self.at, self.grid)
+
+    def put_on(self, document: Document, turns: Turns | None) -> None:
+        """Show the map in a Bokeh document, computed in turn with what other readers wait for, if there are turns."""
+        self.document, self._turns = document, turns
+        self.post.put_on(document)
+
+    def leave(self) -> None:
+        """Compute and draw no longer."""
+        self.document = self._turns = None
 
     @property
     def axes(self) -> _Axes:
@@ -78,8 +92,9 @@ class LiveMap:
 
     def draw(self) -> None:
         """Compute and draw the map of the settings at once."""
-        for _ in self._drawing():
-            pass
+        for drawn in self._drawing():
+            if drawn is not None:
+                drawn()
 
     def soon(self) -> None:
         """Begin the map at once if compiled functions compute it, else when the slider rests."""
@@ -94,24 +109,27 @@ class LiveMap:
         self._resting = None
         self._begin()
 
+    def _choose(self) -> None:
+        self.at.visible = self.airspeed is not None
+        self._begin()
+
     def _begin(self) -> None:
         """Begin the map, unless one is being computed: that one is drawn first, and the next one follows."""
-        if self._parts is None and self.document is not None:
-            self._parts = self._drawing()
-            self.document.add_next_tick_callback(self._next_part)
+        if not self._computing and self._turns is not None:
+            self._computing = True
+            self._turns.add_map(self._parts())
 
-    def _next_part(self) -> None:
-        """Compute a part of the map, and let the other work of the server have its turn before the next part."""
-        if self._parts is None or self.document is None:
-            return
-        try:
-            next(self._parts)
-        except StopIteration:
-            self._parts = None
-            if self._drawn != self._settings(self.axes):
-                self._begin()
-        else:
-            self.document.add_next_tick_callback(self._next_part)
+    def _parts(self) -> Iterator[None]:
+        """Compute the map, and draw when the document lets the map."""
+        for drawn in self._drawing():
+            if self.document is None:
+                return
+            if drawn is not None:
+                self.document.add_next_tick_callback(drawn)
+            yield
+        self._computing = False
+        if self._drawn != self._settings(self.axes):
+            self._begin()
 
     def _settings(self, axes: _Axes) -> object:
         """Return all that the map depends on."""
@@ -122,24 +140,28 @@ class LiveMap:
         """Return the grid of the map, and the airspeed at which the plane is cut."""
         return self._names, self.airspeed, [axis.values.tolist() for axis in axes]
 
-    def _drawing(self) -> Iterator[None]:
-        """Compute and draw the map, then the boundary of the deck; yield between parts."""
+    def _drawing(self) -> _Draws:
+        """Compute the map, then the boundary of the deck; yield between parts, and what is to be drawn."""
         axes, at = self.axes, self.airspeed
         self._drawn = self._settings(axes)
-        self.at.visible = at is not None
         try:
             plane = yield from self._computed(axes, at, self.chosen.values, self.chosen.options)
-            cut = "" if at is None else f" at {at / KNOT:.4g} {KTAS}"
-            self.drawings.show_map(plane, axes, cut)
-            self.message.text = words.map_messages(plane)
-            self.post.send()
+            yield partial(self._show, plane, axes, at)
             yield from self._comparing(plane, axes, at)
         except InputError as error:
-            self.message.text = words.alert(f"{error}. The map is that of the settings before.")
-            self.post.send()
+            yield partial(self._tell, words.alert(f"{error}. The map is that of the settings before."))
 
-    def _comparing(self, plane: GrowthPlane, axes: _Axes, at: float | None) -> Iterator[None]:
-        """Draw the boundary of the deck, unless it is drawn already."""
+    def _show(self, plane: GrowthPlane, axes: _Axes, at: float | None) -> None:
+        cut = "" if at is None else f" at {at / KNOT:.4g} {KTAS}"
+        self.drawings.show_map(plane, axes, cut)
+        self._tell(words.map_messages(plane))
+
+    def _tell(self, message: str) -> None:
+        self.message.text = message
+        self.post.send()
+
+    def _comparing(self, plane: GrowthPlane, axes: _Axes, at: float | None) -> _Draws:
+        """Compute the boundary of the deck, unless it is drawn already."""
         wanted = self._plane_of(axes) if self.compared else None
         if self._drawn_deck == wanted:
             return
@@ -148,7 +170,7 @@ class LiveMap:
         if self.compared:
             of_deck = self.chosen.are_of_deck
             deck = plane if of_deck else (yield from self._computed(axes, at, {}, self.chosen.first_options))
-        self.drawings.compare_map(deck, axes)
+        yield partial(self.drawings.compare_map, deck, axes)
 
     def _computed(
         self, axes: _Axes, at: float | None, values: Any, options: Any

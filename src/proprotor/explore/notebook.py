@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from proprotor.case import Case, load_case
-from proprotor.deck.vary import design_inputs
+from proprotor.deck.vary import added_loops, varied_numbers
 from proprotor.errors import InputError
 from proprotor.model.stamp import one_density
 from proprotor.needs import need
@@ -20,6 +20,7 @@ from proprotor.units import in_metres_per_second
 
 if TYPE_CHECKING:
     from proprotor.explore.page import ExplorePage
+    from proprotor.explore.turns import Turns
 
 _POINTS = 60  # airspeeds by default
 _HEIGHT = 920  # pixels
@@ -45,9 +46,9 @@ class _Explorer:
         self.address = f"http://{ADDRESS}:{opened.getsockname()[1]}/{place}"
         self._server = started(self._put_on, opened, IOLoop.current(), place)
 
-    def _put_on(self, document: Any) -> None:
+    def _put_on(self, document: Any, turns: Turns) -> None:
         self._shown = self._page()
-        self._shown.put_on(document)
+        self._shown.put_on(document, turns)
 
     @property
     def case(self) -> Case:
@@ -98,20 +99,24 @@ def explore(case: Case, airspeed: Any = None, **options: Any) -> _Explorer:
     Raises
     ------
     InputError
-        For a case that is not from a deck, airspeeds that are no range, unusable options, without the packages of the
-        extra, and outside a notebook.
+        For a case that is not from a deck, or has control loops that are not, airspeeds that are no range, unusable
+        options, without the packages of the extra, and outside a notebook.
     """
     need("bokeh", "explore", "the page", "explore")
     need("tornado", "explore", "the page", "explore")
     _check_runs_in_notebook()
     if case.deck is None:
         raise InputError("case", case.name, "must be from a deck: its numbers are what the sliders set")
+    if added_loops(case):
+        raise InputError(
+            "case", case.name, "must have its control loops in the deck, which is what the page shows"
+        )
     base, settings = case.deck.origin
     deck = load_case(base, settings)
     drawn = _airspeeds(case, airspeed)
     choice = parse_options(deck.model_options({"backend": "auto"} | options))
     in_force = {name: getattr(choice, name) for name in (*CHOICES, *options)}
-    values = _changed(deck, case)
+    values = {path: float(value) for path, value in varied_numbers(case).items()}
 
     def page() -> ExplorePage:
         from proprotor.explore.page import ExplorePage  # here, because bokeh takes long to import
@@ -142,13 +147,3 @@ def _airspeeds(case: Case, airspeed: Any) -> Any:
     if len(given) < 2:
         raise InputError("airspeed", airspeed, "must be a range of airspeeds")
     return given
-
-
-def _changed(deck: Case, case: Case) -> dict[str, float]:
-    """Return the inputs in which a case differs from its deck, SI values by path."""
-    before, now = design_inputs(deck), design_inputs(case)
-    return {
-        path: float(now[path].si)
-        for path in now
-        if path in before and float(now[path].si) != float(before[path].si)
-    }

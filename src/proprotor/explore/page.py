@@ -25,6 +25,7 @@ from proprotor.explore.inputs import SliderInput, first_inputs
 from proprotor.explore.live_map import LiveMap
 from proprotor.explore.post import Post, Text, script
 from proprotor.explore.save_panel import SavePanel
+from proprotor.explore.turns import Turns
 from proprotor.model.provenance import reservations
 from proprotor.model.stamp import of_case, unusual_options
 from proprotor.rotor.options import CHOICES
@@ -65,6 +66,7 @@ class ExplorePage:
     ) -> None:
         self.case, self.chosen = case, Chosen(case, airspeeds, options)
         self.document: Document | None = None
+        self._turns: Turns | None = None
         self._waiting = self._held = False
         self._compared: object = None  # what the curves of the deck show
         self._told_of: object = None  # the options that the text at the foot tells
@@ -84,9 +86,13 @@ class ExplorePage:
         self.map = LiveMap(self.chosen, self.drawings, up)
         self.saves = SavePanel(self.chosen, self.inputs.inputs, self.map, (base, fields), self._refuse)
 
-    def put_on(self, document: Document) -> None:
-        """Build the page in a Bokeh document, and draw the modes of the deck."""
-        self.document = self.map.document = document
+    def put_on(self, document: Document, turns: Turns | None = None) -> None:
+        """Build the page in a Bokeh document, and draw the modes of the deck.
+
+        `turns` are those of the readers of a server, without which the map is drawn when `map.draw` is called alone.
+        """
+        self.document, self._turns = document, turns
+        document.on_session_destroyed(lambda _: self._leave())
         document.title = f"{self.case.title or self.case.name}: explore"
         for name in ("quick.js", "names.js"):
             document.js_on_event(DocumentReady, CustomJS(code=script(name)))
@@ -96,12 +102,13 @@ class ExplorePage:
         document.add_root(self._layout())
         document.add_root(self.saves.file)
         self.post.put_on(document)
-        self.map.post.put_on(document)
+        self.map.put_on(document, turns)
         self.update()
 
     def update(self) -> None:
         """Analyse and draw the case with all settings; if that is impossible, say why and keep the last drawing."""
-        self._waiting, own = False, self.chosen
+        self._wait(False)
+        own = self.chosen
         try:
             found = live_modes(own.case, own.airspeeds, own.values, **own.options)
         except InputError as error:
@@ -165,8 +172,20 @@ class ExplorePage:
         """Update the page once for all moves that wait for an update."""
         if self._waiting or self._held or self.document is None:
             return
-        self._waiting = True
+        self._wait(True)
         self.document.add_next_tick_callback(self.update)
+
+    def _wait(self, waiting: bool) -> None:
+        """Let the maps of all readers wait for the curves of this page, or not."""
+        self._waiting = waiting
+        if self._turns is not None:
+            (self._turns.curves_wait if waiting else self._turns.curves_done)(self)
+
+    def _leave(self) -> None:
+        """Do nothing more for a reader who has closed the page."""
+        self._wait(False)
+        self.document = self._turns = None
+        self.map.leave()
 
     def _layout(self) -> Any:
         reset = Button(label="Reset", name="reset", width=90)

@@ -15,6 +15,8 @@ from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
 from tornado.web import ErrorHandler
 
+from proprotor.explore.turns import Turns
+
 if TYPE_CHECKING:
     from bokeh.document import Document
 
@@ -72,24 +74,24 @@ def listen(port: int) -> socket.socket:
 
 
 def started(
-    page: Callable[[Document], None], opened: socket.socket, loop: IOLoop, place: str = ""
+    page: Callable[[Document, Turns], None], opened: socket.socket, loop: IOLoop, place: str = ""
 ) -> BaseServer:
     """Start a server of a page on an event loop.
 
     Parameters
     ----------
     page : callable
-        Puts a page into the Bokeh document of each reader.
+        Puts a page into the Bokeh document of each reader; takes the turns of all readers too.
     opened : socket
         Result of `listen`.
     loop : IOLoop
     place : str
         A secret word: the page then is at this place alone, and other pages that know the place may show it.
     """
-    port = opened.getsockname()[1]
+    port, turns = opened.getsockname()[1], Turns(loop)
     names = frozenset(f"{name}:{port}" for name in (ADDRESS, "localhost"))
     application = _OwnPages(
-        {f"/{place}": Application(FunctionHandler(page))},
+        {f"/{place}": Application(FunctionHandler(lambda document: page(document, turns)))},
         extra_websocket_origins=sorted(names),
         use_index=False,
     )
@@ -101,13 +103,15 @@ def started(
     return server
 
 
-def serve(page: Callable[[Document], None], opened: socket.socket, ready: Callable[[str], None]) -> None:
+def serve(
+    page: Callable[[Document, Turns], None], opened: socket.socket, ready: Callable[[str], None]
+) -> None:
     """Serve a page until it is interrupted.
 
     Parameters
     ----------
     page : callable
-        Puts a page into the Bokeh document of each reader.
+        Puts a page into the Bokeh document of each reader; takes the turns of all readers too.
     opened : socket
         Result of `listen`.
     ready : callable
