@@ -41,7 +41,7 @@ def printed(title: str, rows: Rows) -> Table:
     table = Table("without", *WING, "change of chord", title=title)
     for label, found in rows.items():
         change = found["chord"] - rows["nothing"]["chord"]
-        table.add_row(label, *(f"{found[mode]:.1f}" for mode in WING), f"{change:+.1f}")
+        table.add_row(label, *(f"{found[mode]:.1f}" for mode in WING), f"{change:+z.1f}")
     return table
 
 
@@ -56,7 +56,7 @@ def of_page(models: dict[str, Rows]) -> PageTable:
 def _cells(models: dict[str, Rows]) -> Iterator[tuple[str, ...]]:
     for label in next(iter(models.values())):
         chord = [
-            f"{rows[label]['chord']:.1f} ({rows[label]['chord'] - rows['nothing']['chord']:+.1f})"
+            f"{rows[label]['chord']:.1f} ({rows[label]['chord'] - rows['nothing']['chord']:+z.1f})"
             for rows in models.values()
         ]
         yield (label, *chord, *(_of_beam(rows[label]["beam"]) for rows in models.values()))

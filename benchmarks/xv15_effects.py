@@ -117,7 +117,7 @@ def aircraft(effect: Effect) -> Iterator[float]:
 
 def shown(value: float, base: float) -> str:
     """Return a speed and its distance from that of the deck."""
-    return "none" if value != value else f"{value:.1f} ({value - base:+.1f})"
+    return "none" if value != value else f"{value:.1f} ({value - base:+z.1f})"
 
 
 def rows(blade: HingedBlade) -> Iterator[tuple[str, ...]]:
