@@ -15,20 +15,9 @@ from proprotor.model.inflow import with_inflow
 from proprotor.model.lift_lag import LaggingBlade, with_lift_lag
 from proprotor.model.linear_model import INPUTS
 from proprotor.rotor.motions import INFLOW, lag_coordinates
+from tests.derive.test_invariants import REVERSED
 from tests.oracles.random_rotors import RotorInAir
 
-REVERSED = (
-    "y",
-    "alpha_x",
-    "alpha_z",
-    "flap_1s",
-    "lag_0",
-    "lag_1c",
-    "pitch_0",
-    "pitch_1c",
-    "azimuth",
-    "gimbal_1s",
-)
 REVERSED_ON_BLADE = ("hub_i", "turn_j", "turn_k", "lag", "pitch", "azimuth", "gimbal_roll")
 REVERSED_LOADS = ("fx", "m")  # in the plane, and nose up
 REVERSED_MOTIONS = ("ut", "theta", "spin")  # along the chord, and nose up
