@@ -511,23 +511,24 @@ def _known_unit(written: str) -> str | None:
 
 def _in_base_units(powers: dict[str, int]) -> tuple[float, dict[str, int]]:
     """Return the factor of a product of units in base units, and the power of each base unit."""
-    units, _, _ = _definitions()
     scales: dict[float, int] = {}
     base: dict[str, int] = {}
-
-    def collect(powers: dict[str, int], times: int) -> None:
-        for name, power in powers.items():
-            unit = units[_known_unit(name) or name]
-            if unit is None:
-                base[name] = base.get(name, 0) + power * times
-            else:
-                scales[unit[0]] = scales.get(unit[0], 0) + power * times
-                collect(unit[1], power * times)
-
-    collect(powers, 1)
+    _collect(powers, 1, scales, base)
     # Equal scales cancel, and what remains is multiplied before it is divided: 1 m is exactly 1 m.
     ordered = sorted(scales.items(), key=lambda one: one[1] < 0)
     return math.prod((scale**power for scale, power in ordered), start=1.0), base
+
+
+def _collect(powers: dict[str, int], times: int, scales: dict[float, int], base: dict[str, int]) -> None:
+    """Add a product of units, to some power, to the powers of factors and of base units."""
+    units, _, _ = _definitions()
+    for name, power in powers.items():
+        unit = units[_known_unit(name) or name]
+        if unit is None:
+            base[name] = base.get(name, 0) + power * times
+        else:
+            scales[unit[0]] = scales.get(unit[0], 0) + power * times
+            _collect(unit[1], power * times, scales, base)
 
 
 def _unit_names() -> list[str]:

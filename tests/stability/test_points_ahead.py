@@ -28,20 +28,20 @@ class Asked:
         return linear_model(one, 0.2 * one, 1 + np.asarray(position)[:, None, None] * one, ("spring",))
 
 
-def within(ahead, low, high, share=0.5, line=0):
+def within(ahead, asked, low, high, share=0.5, line=0):
     low, high, share, line = np.broadcast_arrays(*map(np.atleast_1d, (low, high, share, line)))
-    return ahead.within(line, np.stack([low, high]).astype(float), share.astype(float))
+    return ahead.within(line, np.stack([low, high]).astype(float), share.astype(float), asked)
 
 
 def test_halves_and_quarters_of_a_halved_step_are_not_solved_again():
     asked = Asked()
-    ahead = PointsAhead(asked)
-    within(ahead, 0, 1)
+    ahead = PointsAhead()
+    within(ahead, asked, 0, 1)
     assert asked.calls[0] == [(0, eighth / 8) for eighth in range(1, 8)]
     count = len(asked.calls)
-    found, works = within(ahead, [0.5, 0], [1, 0.5])
+    found, works = within(ahead, asked, [0.5, 0], [1, 0.5])
     assert found.position.tolist() == [0.75, 0.25] and works.all()
-    found, works = within(ahead, [0, 0.75], [0.25, 1])
+    found, works = within(ahead, asked, [0, 0.75], [0.25, 1])
     assert found.position.tolist() == [0.125, 0.875]
     np.testing.assert_allclose(np.abs(found.spectrum.values[:, 0]) ** 2, [1.125, 1.875], rtol=1e-12)
     assert len(asked.calls) == count
@@ -50,19 +50,19 @@ def test_halves_and_quarters_of_a_halved_step_are_not_solved_again():
 
 def test_a_point_ahead_that_fails_is_a_failure_once_it_is_asked_for():
     asked = Asked()
-    ahead = PointsAhead(asked)
-    found, works = within(ahead, 0, 1)
+    ahead = PointsAhead()
+    found, works = within(ahead, asked, 0, 1)
     assert works.all() and found.position.tolist() == [0.5]
-    found, works = within(ahead, [0.25, 0.5], [0.5, 0.75])
+    found, works = within(ahead, asked, [0.25, 0.5], [0.5, 0.75])
     assert works.tolist() == [False, True] and found.position.tolist() == [0.625]
-    found, works = within(ahead, 0.25, 0.5)
+    found, works = within(ahead, asked, 0.25, 0.5)
     assert found is None and not works.any()
 
 
 @pytest.mark.parametrize(("count", "share"), [(1, 0.4), (3, 0.5)], ids=["not halved", "many steps"])
 def test_nothing_is_solved_ahead_where_it_would_cost_more_than_it_spares(count, share):
     asked = Asked()
-    ahead = PointsAhead(asked)
-    found, _ = within(ahead, np.zeros(count), np.ones(count), share, np.arange(count))
+    ahead = PointsAhead()
+    found, _ = within(ahead, asked, np.zeros(count), np.ones(count), share, np.arange(count))
     assert asked.calls == [[(line, share) for line in range(count)]]
     assert found.line.tolist() == list(range(count)) and ahead.lines == []

@@ -68,7 +68,7 @@ class Search:
         self._models, self._forgiving, self._states = models, forgiving, states
         # Line and both ends of steps of lines on which nothing settles, as where the trim jumps back and forth.
         self.unsettled: list[tuple[int, float, float]] = []
-        self._ahead = PointsAhead(self.solve)
+        self._ahead = PointsAhead()
         self.scanned = self.solve(line, position, plain=onset_only)
         self.solves = np.bincount(line[self.scanned.works], minlength=int(line.max(initial=-1)) + 1)
         if self.scanned.points is not None:
@@ -166,7 +166,7 @@ class Search:
         few, first = self.steps.at(chosen), len(self.points.position)
         line = self.points.line[few.before]
         ends = self.points.position[np.stack([few.before, few.after])]
-        between, works = self._ahead.within(line, ends, share)
+        between, works = self._ahead.within(line, ends, share, self.solve)
         if between is None:
             return False
         self.points = self.points.joined(between)

@@ -14,6 +14,7 @@ import numpy as np
 from proprotor.stability.points import Points, Solved
 from proprotor.typing import Array
 
+_Solve = Callable[[Array, Array], Solved]
 _FEW = 2  # steps that are halved: with more of them the points ahead cost more than the calls that they spare
 _HALVINGS = 2  # of a halved step
 
@@ -21,14 +22,11 @@ _HALVINGS = 2  # of a halved step
 class PointsAhead:
     """Points that were solved and not asked for yet.
 
-    Parameters
-    ----------
-    solve : callable
-        Takes lines (k,) and positions (k,) and returns what is found there.
+    Who solves the points is told at each call and not kept: the search that holds these points would be held by them,
+    and its memory would wait for Python's collector of cycles.
     """
 
-    def __init__(self, solve: Callable[[Array, Array], Solved]) -> None:
-        self._solve = solve
+    def __init__(self) -> None:
         self._points: Points | None = None
         self._waiting: dict[tuple[int, float], int] = {}  # line and position to the place among the points
 
@@ -37,8 +35,11 @@ class PointsAhead:
         """The line of each point that nothing has asked for."""
         return [line for line, _ in self._waiting]
 
-    def within(self, line: Array, ends: Array, share: Array) -> tuple[Points | None, Array]:
-        """Return the points at shares (k,) of steps with both ends (2, k), and which (k,) of the points work."""
+    def within(self, line: Array, ends: Array, share: Array, solve: _Solve) -> tuple[Points | None, Array]:
+        """Return the points at shares (k,) of steps with both ends (2, k), and which (k,) of the points work.
+
+        `solve` takes lines (k,) and positions (k,) and returns what is found there.
+        """
         at = ends[0] + share * (ends[1] - ends[0])
         asked = list(zip(line.tolist(), at.tolist(), strict=True))
         new = np.array([one not in self._waiting for one in asked])
@@ -46,14 +47,14 @@ class PointsAhead:
             halved = new & (share == 0.5)
             few = halved if halved.sum() <= _FEW else np.zeros(len(at), dtype=bool)
             lines, places = _further(line[few], ends[:, few])
-            self._put(np.concatenate([line[new], lines]), np.concatenate([at[new], places]))
+            self._put(np.concatenate([line[new], lines]), np.concatenate([at[new], places]), solve)
         rows = np.array([self._waiting.pop(one, -1) for one in asked])
         works = rows >= 0
         return (self._points.at(rows[works]) if self._points is not None and works.any() else None), works
 
-    def _put(self, line: Array, position: Array) -> None:
-        """Solve points and let those that work wait, with the points that wait already."""
-        found = self._solve(line, position).points
+    def _put(self, line: Array, position: Array, solve: _Solve) -> None:
+        """_Solve points and let those that work wait, with the points that wait already."""
+        found = solve(line, position).points
         if found is None:
             return
         waiting = list(self._waiting)
