@@ -163,3 +163,51 @@ def test_derivatives_by_a_complex_step_have_numpys_trims_and_reasons():
             expected = part(getattr(one, name))
             scale = np.nanmax(np.abs(expected))
             np.testing.assert_allclose(part(getattr(other, name)), expected, rtol=0, atol=1e-12 * scale)
+
+
+# Ranges in which some trims lie beyond what the bound shows, and take the path of loads.
+FAR = {
+    "rotor.precone": (-0.1, 0.25),
+    "rotor.control_stiffness": (2e3, 4e4),
+    "rotor.chord": (0.2, 1.2),
+    "operation.density": (0.2, 2.4),
+}
+
+
+FREE_TO_PITCH = [
+    one for one in OPTIONS if "rigid" not in one.values() and "pitch" not in one.get("locked", ())
+]
+
+
+@pytest.mark.parametrize(
+    "options", FREE_TO_PITCH, ids=lambda options: ", ".join(map(str, options.values())) or "usual"
+)
+@pytest.mark.parametrize("trim", ["windmilling", "thrust", "collective"])
+def test_trims_far_from_the_undeflected_blade_are_followed_step_by_step_as_numpy_does(
+    options, trim, monkeypatch
+):
+    solver, rng = import_module("proprotor.rotor.trim_solver"), np.random.default_rng(1)
+    inputs = {name: rng.uniform(*ends, (16, 1)) for name, ends in FAR.items()}
+    case = pp.load_case("xv15-uncoupled").vary(inputs)
+    given = {
+        "windmilling": "windmill",
+        "thrust": {"thrust_coefficient": 0.01},
+        "collective": {"collective": 0.7},
+    }
+    case = replace(case, operation=replace(case.operation, trim=given[trim]))
+    followed, genuine = [], solver.follow
+
+    def recorded(balance, state, rows, iterations):
+        path = genuine(balance, state, rows, iterations)
+        followed.append((balance.options.backend, path.arrived.sum()))
+        return path
+
+    monkeypatch.setattr(solver, "follow", recorded)
+    one, other = (case.linearize(SPEEDS, backend=backend, **options) for backend in ("numpy", "compiled"))
+    assert_alike(one, other)
+    same = one.trim.iterations == other.trim.iterations
+    assert same[one.trim.converged].mean() > 0.99  # where rounding does not decide on one step more
+    arrived = {
+        backend: sum(count for by, count in followed if by == backend) for backend in ("numpy", "compiled")
+    }
+    assert arrived["numpy"] > 5 and arrived["compiled"] <= 0.05 * arrived["numpy"]

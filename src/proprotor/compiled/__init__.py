@@ -25,7 +25,7 @@ functions hand over. Nothing needs this room: without a compiler everything is c
                  the bound; linear equations of a few rows
     screening.h, screening.c, root_pairs.c
                  the same for the roots of a step in lanes, and for two roots that cannot be told apart
-    points.h, trim.h, whole.h, plain.c, general.c
+    points.h, trim.h, path.h, whole.h, plain.c, general.c
                  for each set of plans: at many points, Newton's method for the trim, trim and matrices in one go
 
 The public names of these modules, but for `columns`, are the room's face.

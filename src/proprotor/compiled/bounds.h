@@ -20,36 +20,59 @@ struct slopes {
     square full, airloads;
 };
 
-/* Return where the spectral radius of a matrix without negative entries is small enough, by the bound of Collatz and
-   Wielandt after 2, 4 and 8 steps of power iteration. */
-static inline whole contracts(int size, square matrix)
+/* Return the larger number, NaN if one is. */
+static inline lanes largest(lanes number, lanes so_far) { return choose((number > so_far) | (number != number), number, so_far); }
+
+/* Begin power iteration with a matrix without negative entries. */
+static inline void begin_power(int size, square matrix, lanes *weight)
 {
-    lanes weight[MOST_UNKNOWNS], next[MOST_UNKNOWNS];
-    whole found = every(0);
     for (int i = 0; i < size; i++) {
         matrix[i][i] += FLOOR;
         weight[i] = all(0.0);
         for (int j = 0; j < size; j++) weight[i] += matrix[i][j];
     }
+}
+
+/* Take a step of power iteration, and return the bound of Collatz and Wielandt on the spectral radius. */
+static inline lanes power_step(int size, square matrix, lanes *weight)
+{
+    lanes next[MOST_UNKNOWNS], bound = {0};
+    for (int i = 0; i < size; i++) {
+        next[i] = all(0.0);
+        for (int j = 0; j < size; j++) next[i] += matrix[i][j] * weight[j];
+        bound = largest(next[i] / weight[i], bound);
+    }
+    for (int i = 0; i < size; i++) weight[i] = next[i];
+    return bound;
+}
+
+/* Return where the spectral radius is small enough, by the bound after 2, 4 and 8 steps. */
+static inline whole contracts(int size, square matrix)
+{
+    lanes weight[MOST_UNKNOWNS];
+    whole found = every(0);
+    begin_power(size, matrix, weight);
     for (int step = 1; step <= POWER_STEPS && any(~found); step++) {
-        whole enough = every(-1);
-        for (int i = 0; i < size; i++) {
-            next[i] = all(0.0);
-            for (int j = 0; j < size; j++) next[i] += matrix[i][j] * weight[j];
-            enough &= next[i] / weight[i] <= CONTRACTION; /* false for NaN */
-        }
-        for (int i = 0; i < size; i++) weight[i] = next[i];
+        whole enough = power_step(size, matrix, weight) <= CONTRACTION; /* false for NaN */
         if (step == 2 || step == 4 || step == POWER_STEPS) found |= enough;
     }
     return found;
 }
 
-/* Return where the slopes of one window of the path contract: half its length, what its middle leaves out of the loads,
-   the mean of the slopes at both ends of the path, and how far the ends are from it. */
-static inline whole contracts_in(int size, double half, double left_out, const struct slopes *mean, const struct slopes *aside)
+/* Return the bound after all steps. */
+static inline lanes radius_of(int size, square matrix)
+{
+    lanes weight[MOST_UNKNOWNS], bound = {0};
+    begin_power(size, matrix, weight);
+    for (int step = 1; step <= POWER_STEPS; step++) bound = power_step(size, matrix, weight);
+    return bound;
+}
+
+/* Find how much Newton's iteration moves in one window of the path, entry by entry: half its length, what its middle leaves
+   out of the loads, the mean of the slopes at both ends of the path, and how far the ends are from it. */
+static inline void move_in(int size, lanes half, lanes left_out, const struct slopes *mean, const struct slopes *aside, square matrix)
 {
     lanes rows[MOST_UNKNOWNS * 3 * MOST_UNKNOWNS];
-    square matrix;
     int columns = 3 * size;
     for (int i = 0; i < size; i++)
         for (int j = 0; j < size; j++) {
@@ -64,26 +87,43 @@ static inline whole contracts_in(int size, double half, double left_out, const s
             const lanes *row = rows + i * columns + j;
             matrix[i][j] = magnitude(row[size]) + REACH * magnitude(row[2 * size]);
         }
-    return contracts(size, matrix);
+}
+
+/* Find the mean of the slopes at both ends of a path, and how far the ends are from it. */
+static inline void find_middle(int size, const struct slopes *before, const struct slopes *after, struct slopes *mean, struct slopes *aside)
+{
+    for (int i = 0; i < size; i++)
+        for (int j = 0; j < size; j++) {
+            mean->full[i][j] = (before->full[i][j] + after->full[i][j]) / 2.0;
+            mean->airloads[i][j] = (before->airloads[i][j] + after->airloads[i][j]) / 2.0;
+            aside->full[i][j] = after->full[i][j] - mean->full[i][j];
+            aside->airloads[i][j] = after->airloads[i][j] - mean->airloads[i][j];
+        }
 }
 
 /* Return where the slopes contract in all of the windows of the path. */
 static inline whole contracts_in_all(int size, int windows, const struct slopes *before, const struct slopes *after)
 {
     struct slopes mean, aside;
-    for (int i = 0; i < size; i++)
-        for (int j = 0; j < size; j++) {
-            mean.full[i][j] = (before->full[i][j] + after->full[i][j]) / 2.0;
-            mean.airloads[i][j] = (before->airloads[i][j] + after->airloads[i][j]) / 2.0;
-            aside.full[i][j] = after->full[i][j] - mean.full[i][j];
-            aside.airloads[i][j] = after->airloads[i][j] - mean.airloads[i][j];
-        }
+    square matrix;
+    find_middle(size, before, after, &mean, &aside);
     whole found = every(-1);
     for (int window = 0; window < windows && any(found); window++) {
-        double left_out = 1.0 - (2 * window + 1) * (0.5 / windows);
-        found &= contracts_in(size, 0.5 / windows, left_out, &mean, &aside);
+        move_in(size, all(0.5 / windows), all(1.0 - (2 * window + 1) * (0.5 / windows)), &mean, &aside, matrix);
+        found &= contracts(size, matrix);
     }
     return found;
+}
+
+/* Return the radius in a step of the path from one share of the loads to another. */
+static inline lanes radius_between(int size, lanes share, lanes to, const struct slopes *before, const struct slopes *after)
+{
+    struct slopes mean, aside;
+    square matrix;
+    lanes half = (to - share) / 2.0;
+    find_middle(size, before, after, &mean, &aside);
+    move_in(size, half, 1.0 - (share + half), &mean, &aside, matrix);
+    return radius_of(size, matrix);
 }
 
 /* Set slopes per unit of the moments that springs and centrifugal force set against flap and lag, see
@@ -126,6 +166,17 @@ static inline whole have_one_path(int size, const unsigned char *sprung, whole w
     for (int windows = 2 * FEWEST_WINDOWS; windows <= MOST_WINDOWS && any(wanted & ~found); windows *= 2)
         found |= contracts_in_all(size, windows, before, after) | contracts_in_all(size, windows, &first, &last);
     return found;
+}
+
+/* Return the radius in a step of the path, with slopes by angles or by moments, whichever is smaller. */
+static inline lanes radius_in_step(int size, const unsigned char *sprung, lanes share, lanes to, const struct slopes *before, const struct slopes *after)
+{
+    struct slopes first, last;
+    lanes by_angles = radius_between(size, share, to, before, after);
+    count_by_moments(size, sprung, before, &first);
+    count_by_moments(size, sprung, after, &last);
+    lanes by_moments = radius_between(size, share, to, &first, &last);
+    return choose((by_moments < by_angles) | (by_angles != by_angles), by_moments, by_angles);
 }
 
 /* Return where the relative difference of slopes contracts. */

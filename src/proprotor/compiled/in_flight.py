@@ -1,4 +1,4 @@
-"""Trim and matrices of rotors without any reservation, in one call of the compiled functions."""
+"""Trim and matrices of rotors in one call of the compiled functions: whole for points without any reservation."""
 
 from __future__ import annotations
 
@@ -65,11 +65,13 @@ class Limits(NamedTuple):
 
 
 class InFlight(NamedTuple):
-    """Rotors at n points; the numbers of points that are not `served` mean nothing.
+    """Rotors at n points.
 
-    served : array (n,)
-    state : array (4, n)
-        Unknowns of the trim.
+    served, trimmed : array (n,)
+        Which points have all of this, and which have at least state, before and iterations. All other numbers mean
+        nothing.
+    state, before : array (4, n)
+        Unknowns of the trim, and these before the last step.
     thrust, torque : array (n,)
         Of the rotor.
     iterations : array (n,)
@@ -78,7 +80,9 @@ class InFlight(NamedTuple):
     """
 
     served: Array
+    trimmed: Array
     state: Array
+    before: Array
     thrust: Array
     torque: Array
     iterations: Array
@@ -123,17 +127,17 @@ class Rotors:
         if airspeed is not None:
             record = record.copy()
             record[self._airspeed] = place_of(airspeed[:, None])
-        numbers = np.empty((6, points))
-        counts, served = np.empty(points, dtype=np.int64), np.empty(points, dtype=bool)
+        numbers, kinds = np.empty((10, points)), np.empty((2, points), dtype=bool)
+        counts = np.empty(points, dtype=np.int64)
         matrices = {name: np.empty((points, *shape)) for name, shape in self._shapes.items()}
-        state, thrust, torque = numbers[:4], numbers[4], numbers[5]
-        arrays = (state, thrust, torque, counts, served, *matrices.values())
+        state, before, (thrust, torque), (served, trimmed) = numbers[:4], numbers[4:8], numbers[8:], kinds
+        arrays = (state, before, thrust, torque, counts, served, trimmed, *matrices.values())
         places = _PLACES(*(array.__array_interface__["data"][0] for array in arrays))
         self._call(ctypes.c_ssize_t(points), address(record), *self._asked, ctypes.byref(places))
-        return InFlight(served, state, thrust, torque, counts, matrices)
+        return InFlight(served, trimmed, state, before, thrust, torque, counts, matrices)
 
 
-_PLACES = ctypes.c_void_p * 9  # of the results, see whole.h
+_PLACES = ctypes.c_void_p * 11  # of the results, see whole.h
 
 
 @cache

@@ -135,7 +135,7 @@ void FOR(balance_of_blade)(ptrdiff_t points, const struct blade *blade, double *
     }
 }
 
-#include "trim.h"
+#include "path.h"
 
 #define MOST_ENTRIES 1024
 

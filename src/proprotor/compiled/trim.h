@@ -4,6 +4,7 @@
 
 #define BALANCES 5 /* flap, lag, pitch, torque, thrust */
 #define UNKNOWNS MOST_UNKNOWNS /* coning, lag, elastic pitch, collective */
+#define ELASTIC_PITCH 2
 #define COLLECTIVE 3
 #define LARGEST_STEP 0.3 /* rad, as all numbers here, which are those of trim_balance.py and trim_solver.py */
 #define CONVERGED 1e-13
@@ -93,13 +94,53 @@ static void solve_step(int count, const struct linear *at, lanes *step)
 }
 
 /* Add the part of precone to the residual of the undeflected blade. */
-static void add_precone_load(const struct search *search, lanes *q, struct linear *at)
+static void add_precone_load(const struct search *search, const lanes *q, lanes *residual)
 {
     lanes results[PRECONE_LOAD_RESULTS], own[BALANCES];
     precone_load(q, results);
     fill(&search->precone, results, own);
     for (int i = 0; i < search->count; i++)
-        if (search->unknowns[i] != COLLECTIVE) at->residual[i] += own[search->rows[i]];
+        if (search->unknowns[i] != COLLECTIVE) residual[i] += own[search->rows[i]];
+}
+
+/* The blades in the lanes, with the search for their trims: q holds their quantities, those of the last state too. */
+struct blades {
+    const struct blade *blade;
+    const struct search *search;
+    ptrdiff_t point, points;
+    lanes *q, load, offset, precone;
+};
+
+static struct blades blades_at(const struct blade *blade, const struct search *search, ptrdiff_t point, ptrdiff_t points, lanes *q)
+{
+    load_quantities(blade, point, points, q);
+    lanes own = load(&blade->load, point, points, 0), offset = load(&blade->structural_offset, point, points, 0);
+    return (struct blades){blade, search, point, points, q, own, offset, q[Q_PRECONE]};
+}
+
+/* Find the balance at a state and a share of the precone. The radial moments of the loads and the air are told if there is
+   a place for them. */
+static void balance_at(const struct blades *blades, whole where, const lanes *state, lanes share, struct linear *at, lanes *moments, struct air *air)
+{
+    lanes structure[BALANCE_RESULTS], done[WORK_RESULTS], own_moments[LOADS * POWERS * MOST_SEGMENTS];
+    struct air own_air = {where, 0, {0}, {0}};
+    blades->q[Q_PRECONE] = share * blades->precone;
+    set_state(blades->search, state, blades->offset, blades->q);
+    evaluate(blades->blade, blades->point, blades->points, blades->q, structure, done, moments ? moments : own_moments, air ? air : &own_air);
+    linearise(blades->search, structure, done, blades->load, at);
+    blades->q[Q_PRECONE] = blades->precone;
+}
+
+/* Subtract a step from the free unknowns in some lanes, and return its largest part, NaN if one part is. */
+static lanes take_step(const struct search *search, whole where, const lanes *step, lanes *state)
+{
+    lanes size = {0};
+    for (int k = 0; k < search->count; k++) {
+        lanes *own = &state[search->unknowns[k]];
+        *own = choose(where, *own - step[k], *own);
+        size = largest(magnitude(step[k]), size);
+    }
+    return size;
 }
 
 /* Return where a step is the last, by its size and the size of the step before. */
@@ -119,37 +160,29 @@ static void keep(whole where, size_t bytes, const void *others, void *numbers)
     for (size_t k = 0; k < bytes / sizeof(lanes); k++) to[k] = choose(where, from[k], to[k]);
 }
 
-/* Search the trims of the active lanes from the state of the walk on; q holds the quantities of the blade. */
-static void walk_to_trim(const struct blade *blade, ptrdiff_t point, ptrdiff_t points, const struct search *search, whole active, lanes *q, struct walk *walk, double *stations)
+/* Search the trims of the active lanes from the state of the walk on. */
+static void walk_to_trim(const struct blades *blades, whole active, struct walk *walk, double *stations)
 {
-    lanes structure[BALANCE_RESULTS], done[WORK_RESULTS], moments[LOADS * POWERS * MOST_SEGMENTS];
-    lanes size_before = all(INFINITY), load_here = load(&blade->load, point, points, 0);
-    lanes offset = load(&blade->structural_offset, point, points, 0), precone = q[Q_PRECONE];
+    const struct search *search = blades->search;
+    ptrdiff_t size_of_moments = LOADS * POWERS * blades->blade->segments * sizeof(lanes);
+    lanes moments[LOADS * POWERS * MOST_SEGMENTS], size_before = all(INFINITY);
     walk->steps = walk->arrived = every(0);
     for (int count = 0; count < search->most && any(active); count++) {
         struct linear at = {0};
         struct air air = {active, stations, {0}, {0}};
-        lanes step[UNKNOWNS] = {{0}}, size = {0};
+        lanes step[UNKNOWNS] = {{0}};
         int unloaded = search->unloaded && count == 0;
-        q[Q_PRECONE] = unloaded ? all(0.0) : precone;
-        set_state(search, walk->state, offset, q);
-        evaluate(blade, point, points, q, structure, done, moments, &air);
-        linearise(search, structure, done, load_here, &at);
-        q[Q_PRECONE] = precone;
-        if (unloaded) add_precone_load(search, q, &at);
+        balance_at(blades, active, walk->state, all(unloaded ? 0.0 : 1.0), &at, moments, &air);
+        if (unloaded) add_precone_load(search, blades->q, at.residual);
         solve_step(search->count, &at, step);
         if (count == 0) walk->first = at.slopes;
         keep(active, sizeof at, &at, &walk->last);
         keep(active, sizeof step, step, walk->step);
         keep(active, sizeof walk->state, walk->state, walk->before);
-        keep(active, LOADS * POWERS * blade->segments * sizeof(lanes), moments, walk->moments);
+        keep(active, size_of_moments, moments, walk->moments);
         keep(active, sizeof(lanes), &air.angle, &walk->angle);
         keep(active, sizeof(lanes), &air.mach, &walk->mach);
-        for (int k = 0; k < search->count; k++) {
-            lanes *own = &walk->state[search->unknowns[k]];
-            *own = choose(active, *own - step[k], *own);
-            size = choose(magnitude(step[k]) <= size, size, magnitude(step[k])); /* NaN stays */
-        }
+        lanes size = take_step(search, active, step, walk->state);
         whole last = is_last(search, size, size_before);
         walk->steps += active & 1;
         size_before = choose(active, size, size_before);
@@ -197,8 +230,8 @@ void FOR(search_trim)(ptrdiff_t points, const struct blade *blade, const struct 
             struct column own = {found->state + k * points, 1, 0};
             walk.state[k] = load(&own, point, points, 0);
         }
-        load_quantities(blade, point, points, q);
-        walk_to_trim(blade, point, points, search, active, q, &walk, found->doubts);
+        struct blades blades = blades_at(blade, search, point, points, q);
+        walk_to_trim(&blades, active, &walk, found->doubts);
         store_slopes(search->count, &walk.first, active, found->first, point, points);
         store_slopes(search->count, &walk.last.slopes, active, found->last, point, points);
         for (int k = 0; k < UNKNOWNS; k++) store(walk.state[k], found->state + k * points, 1, point, points);

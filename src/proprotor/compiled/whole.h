@@ -1,4 +1,5 @@
-/* Trim and matrices of rotors in one go, for points without any reservation: the others take the search step by step. */
+/* Trim and matrices of rotors in one go, for points without any reservation. What is doubtful about the trim of another
+   point, and what is to be said of a point without a trim, is found out step by step. */
 
 #define TORQUE 3 /* rows of the balance */
 #define THRUST 4
@@ -56,43 +57,64 @@ static whole is_without_doubt(const struct search *search, const struct limits *
     return good & (magnitude(thrust) <= limits->induced * disk);
 }
 
-/* Results: state (4, points), thrust, torque and number of steps; matrices as of `matrices_of_rotor`; which points have
-   them. The numbers of the other points mean nothing. */
+/* Results: state and state before the last step (4, points), thrust, torque and number of steps; matrices as of
+   `matrices_of_rotor`; which points have all of these, and which points have at least a trim at the end of their path, with
+   its states and number of steps. The other numbers mean nothing. */
 struct rotors {
-    double *state, *thrust, *torque;
+    double *state, *before, *thrust, *torque;
     int64_t *iterations;
-    unsigned char *served;
+    unsigned char *served, *trimmed;
     double *matrices[4];
 };
 
-/* Find trim and matrices of rotors: `near` and `last` are the two stages of the search, `places` those of the moments of
-   the loads among the quantities. */
+/* Find the trims of the lanes that may begin, and return where the trim is at the end of its path: `near` and `last` are the
+   two stages of the search. */
+static whole find_trims(struct blades *blades, const struct search *near, const struct search *last, const struct limits *limits, whole begun, lanes air, struct walk *walk, whole *steps)
+{
+    struct path path = {0};
+    memcpy(path.state, walk->state, sizeof path.state);
+    blades->search = near;
+    walk_to_trim(blades, begun, walk, 0);
+    struct slopes end = walk->last.slopes;
+    whole led = walk->arrived & have_one_path(near->count, limits->sprung, walk->arrived, &walk->first, &end);
+    *steps = walk->steps;
+    if (any(begun & ~led)) {
+        whole arrived = follow(blades, begun & ~led, limits->sprung, limits->finds_collective, air, &path);
+        keep(arrived, sizeof path.state, path.state, walk->state);
+        keep(arrived, sizeof end, &path.slopes, &end);
+        *steps += path.steps;
+        led |= arrived;
+    }
+    blades->search = last;
+    walk_to_trim(blades, led, walk, 0);
+    *steps += walk->steps;
+    return walk->arrived & have_one_trim(last->count, limits->sprung, walk->arrived, &walk->last.slopes, &end);
+}
+
+/* Find trim and matrices of rotors: `places` are those of the moments of the loads among the quantities. */
 void FOR(rotors_in_flight)(ptrdiff_t points, const struct blade *blade, const struct search *near, const struct search *last, const struct limits *limits, const struct layouts *layouts, const int32_t *places, const struct rotors *found)
 {
     for (ptrdiff_t point = 0; point < points; point += LANES) {
         lanes q[QUANTITIES], tip = load(&blade->tip, point, points, 0);
         struct walk walk = {0};
-        load_quantities(blade, point, points, q);
-        lanes direction = arc_tangent(q[Q_AIRSPEED] / (THREE_QUARTERS * q[Q_ROTOR_SPEED] * tip));
-        walk.state[COLLECTIVE] = limits->finds_collective ? direction : load(&blade->collective, point, points, 0);
-        whole served = may_begin(limits, q, tip);
-        walk_to_trim(blade, point, points, near, served, q, &walk, 0);
-        served = walk.arrived;
-        struct slopes end = walk.last.slopes;
-        whole steps = walk.steps;
-        served &= have_one_path(near->count, limits->sprung, served, &walk.first, &end);
-        walk_to_trim(blade, point, points, last, served, q, &walk, 0);
-        served = walk.arrived & have_one_trim(last->count, limits->sprung, walk.arrived, &walk.last.slopes, &end);
-        served &= is_without_doubt(last, limits, &walk, q, tip, direction);
-        steps += walk.steps;
+        struct blades blades = blades_at(blade, near, point, points, q);
+        lanes air = arc_tangent(q[Q_AIRSPEED] / (THREE_QUARTERS * q[Q_ROTOR_SPEED] * tip));
+        walk.state[COLLECTIVE] = limits->finds_collective ? air : load(&blade->collective, point, points, 0);
+        whole steps, trimmed = find_trims(&blades, near, last, limits, may_begin(limits, q, tip), air, &walk, &steps);
+        whole served = trimmed & is_without_doubt(last, limits, &walk, q, tip, air);
         for (int lane = 0; lane < LANES && point + lane < points; lane++) {
             found->served[point + lane] = served[lane] != 0;
+            found->trimmed[point + lane] = trimmed[lane] != 0;
             found->iterations[point + lane] = steps[lane];
         }
+        if (!any(trimmed)) continue;
+        for (int k = 0; k < UNKNOWNS; k++) {
+            store(walk.state[k], found->state + k * points, 1, point, points);
+            store(walk.before[k], found->before + k * points, 1, point, points);
+        }
         if (!any(served)) continue;
-        set_state(last, walk.before, load(&blade->structural_offset, point, points, 0), q);
+        set_state(last, walk.before, blades.offset, q);
         find_matrices(blade, point, points, layouts, q, walk.moments, places, found->matrices);
-        for (int k = 0; k < UNKNOWNS; k++) store(walk.state[k], found->state + k * points, 1, point, points);
         store(work_after(last, &walk, THRUST) * q[Q_N_BLADES], found->thrust, 1, point, points);
         store(work_after(last, &walk, TORQUE) * q[Q_N_BLADES], found->torque, 1, point, points);
     }

@@ -10,10 +10,12 @@ import numpy as np
 
 from proprotor.case import Case
 from proprotor.errors import InputError
+from proprotor.model.linear_model import LinearModel
 from proprotor.stability.map import largest_growth
 from proprotor.stability.parameter_lines import AIRSPEED, models_at
 from proprotor.typing import Array
 
+_Parts = Generator[None, None, list[Array]]
 _AT_ONCE = 220  # points of one part: about as long as the modes along 60 airspeeds
 
 
@@ -85,15 +87,46 @@ def growth_plane(
     others = {path: value for path, value in (values or {}).items() if path not in axes}
     varied = case.vary(others) if others else case
     (x_name, x), (y_name, y) = axes.items()
-    fixed = {} if AIRSPEED in axes else {AIRSPEED: airspeed}
+    if AIRSPEED in axes:
+        parts = yield from _along_airspeeds(varied, axes, options or {})
+        if y_name == AIRSPEED:
+            parts = [part.T for part in parts]
+    else:
+        parts = yield from _at_airspeed(varied, axes, airspeed, options or {})
+    growth, reason, warning = parts
+    return GrowthPlane((x_name, y_name), x, y, growth, reason, warning)
+
+
+def _along_airspeeds(case: Case, axes: Mapping[str, Array], options: Mapping[str, Any]) -> _Parts:
+    """Return growth, reasons and warnings (designs, airspeeds); the designs of all parts are built once."""
+    ((name, values),) = ((path, given) for path, given in axes.items() if path != AIRSPEED)
+    designs, speeds = case.vary({name: values[:, None]}), axes[AIRSPEED]
+    width = max(1, _AT_ONCE // len(values))
+    found = []
+    for start in range(0, len(speeds), width):
+        some = np.broadcast_to(
+            speeds[start : start + width], (len(values), len(speeds[start : start + width]))
+        )
+        found.append(_told(designs.linearize(some, **options)))
+        yield
+    return [np.concatenate(part, axis=1) for part in zip(*found, strict=True)]
+
+
+def _at_airspeed(
+    case: Case, axes: Mapping[str, Array], airspeed: float | None, options: Mapping[str, Any]
+) -> _Parts:
+    """Return growth, reasons and warnings (rows, columns) of two inputs at one airspeed."""
+    (x_name, x), (y_name, y) = axes.items()
     across, up = (part.ravel() for part in np.meshgrid(x, y))
-    parts = []
+    found = []
     for start in range(0, len(across), _AT_ONCE):
         some = slice(start, start + _AT_ONCE)
-        model = models_at(varied, fixed | {x_name: across[some], y_name: up[some]}, options or {})
-        parts.append((largest_growth(model)[0], model.trim.reason, model.trim.warning))
+        inputs = {AIRSPEED: airspeed, x_name: across[some], y_name: up[some]}
+        found.append(_told(models_at(case, inputs, options)))
         yield
-    growth, reason, warning = (
-        np.concatenate(part).reshape(len(y), len(x)) for part in zip(*parts, strict=True)
-    )
-    return GrowthPlane((x_name, y_name), x, y, growth, reason, warning)
+    return [np.concatenate(part).reshape(len(y), len(x)) for part in zip(*found, strict=True)]
+
+
+def _told(model: LinearModel) -> tuple[Array, Array, Array]:
+    """Return growth, reason and warning of each point."""
+    return largest_growth(model)[0], model.trim.reason, model.trim.warning

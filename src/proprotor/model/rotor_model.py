@@ -26,7 +26,7 @@ from proprotor.model.stamp import Origin
 from proprotor.needs import check_memory
 from proprotor.rotor import fused
 from proprotor.rotor.generated import evaluate
-from proprotor.rotor.in_flight import find_in_flight, rotors_of, serves_in_flight
+from proprotor.rotor.in_flight import InFlight, find_in_flight, rotors_of, serves_in_flight
 from proprotor.rotor.kept import kept
 from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.motions import (
@@ -51,8 +51,8 @@ from proprotor.rotor.section_loads import (
     load_moments,
     segment_quantities,
 )
-from proprotor.rotor.trim import Target, Trim, take, trim_target
-from proprotor.rotor.trim_solver import Settled, balance_of, solve_trim
+from proprotor.rotor.trim import UNKNOWNS, Target, Trim, take, trim_target
+from proprotor.rotor.trim_solver import Settled, balance_of, settle_trim, solve_trim
 from proprotor.typing import Array
 from proprotor.units import in_metres_per_second
 
@@ -246,6 +246,12 @@ class _Asked(NamedTuple):
         """
         return with_induced(*self) if self.options.has_inflow else solve_trim(*self, one=one)
 
+    def settled(self, found: InFlight, rows: Array) -> Settled:
+        """Return the trim of all points, which one call has found at its own points `rows`."""
+        state = {name: getattr(found.trim, name)[rows] for name in UNKNOWNS}
+        begun = state, take(found.before, rows), found.trim.iterations[rows]
+        return settle_trim(self.sections, self.quantities, self.options, self.target, begun)
+
     def at(self, rows: Array) -> _Asked:
         """Return some of the points."""
         sections, target = self.sections.take(rows), self.target
@@ -265,15 +271,17 @@ class _Asked(NamedTuple):
         found = find_in_flight(rotors, points, own_speeds)
         if not options.pitch_is_free:
             found.matrices["B"] = _without_pitch_equations(found.matrices["K"], found.matrices["B"])
-        if not found.served.all():
-            left = np.flatnonzero(~found.served)
-            own = self.at(left) if points > len(left) else self
-            settled = own.trimmed(one)
+        for left in (found.trimmed & ~found.served, ~found.trimmed):
+            if not left.any():
+                continue
+            rows = np.flatnonzero(left)
+            own = self.at(rows) if points > len(rows) else self
+            settled = own.settled(found, rows) if found.trimmed[rows[0]] else own.trimmed(one)
             matrices = _matrices(own.sections, options, settled, design, one)
             for name, matrix in matrices.items():
-                found.matrices[name][left] = matrix
+                found.matrices[name][rows] = matrix
             for name, values in vars(settled.trim).items():
-                getattr(found.trim, name)[left] = values
+                getattr(found.trim, name)[rows] = values
         return found.matrices, found.trim
 
 

@@ -72,13 +72,13 @@ from proprotor.rotor.blade_frequencies import BladeFrequencies
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
-from proprotor.rotor.in_flight import find_in_flight, rotors_of, serves_in_flight
+from proprotor.rotor.in_flight import InFlight, find_in_flight, rotors_of, serves_in_flight
 from proprotor.rotor.momentum import with_induced
 from proprotor.rotor.offset_mass import OffsetMass
 from proprotor.rotor.operation import Operation
 from proprotor.rotor.rotor import HELD, MASS_INTEGRALS, NOTHING, Rotor
 from proprotor.rotor.trim import UNKNOWNS, Target, Trim, has_offset_mass, take, trim_target, with_trim
-from proprotor.rotor.trim_solver import Settled, balance_of, solve_trim
+from proprotor.rotor.trim_solver import Settled, balance_of, settle_trim, solve_trim
 
 __all__ = [
     "HELD",
@@ -92,6 +92,7 @@ __all__ = [
     "BladeFrequencies",
     "BladeStations",
     "DriveTrain",
+    "InFlight",
     "OffsetMass",
     "Operation",
     "Rotor",
@@ -120,6 +121,7 @@ __all__ = [
     "rotors_of",
     "section_loads",
     "serves_in_flight",
+    "settle_trim",
     "smooth_table",
     "solve_trim",
     "standard_air",

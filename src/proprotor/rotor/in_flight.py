@@ -1,7 +1,7 @@
 """Trim and matrices of rotors without any reservation, in one call of the compiled functions.
 
-A point has reservations if its trim is not found at once, if the bound does not connect the trim with the undeflected
-blade, or if anything makes the trim doubtful. Such a point takes `trim_solver`, which finds out what there is to say.
+A point has reservations if it has no trim at the end of the path from the undeflected blade, or if anything makes the
+trim doubtful. Such a point takes `trim_solver`, which finds out what there is to say of its trim, or why it has none.
 """
 
 from __future__ import annotations
@@ -25,12 +25,17 @@ from proprotor.typing import Array
 _MOST = 20  # steps of each stage; a point that takes more takes `trim_solver`
 
 
-class _InFlight(NamedTuple):
-    """Rotors at n points: trim, and M, C, K and B (n, rows, columns), which hold at the points `served` (n,)."""
+class InFlight(NamedTuple):
+    """Rotors at n points: trim, and M, C, K and B (n, rows, columns), which hold at the points `served` (n,).
+
+    The points `trimmed` (n,), which are more, have at least the unknowns of the trim, now and before the last step.
+    """
 
     served: Array
     trim: Trim
     matrices: dict[str, Array]
+    trimmed: Array
+    before: dict[str, Array]
 
 
 def serves_in_flight(balance: Balance, few: BladeSections) -> bool:
@@ -59,8 +64,8 @@ def rotors_of(balance: Balance) -> Rotors:
     return Rotors(plans, blades_of(balance), stages, limits, shapes_of(plans))
 
 
-def find_in_flight(rotors: Rotors, points: int, airspeed: Array | None = None) -> _InFlight:
-    """Return trim and matrices of points that have no reservations.
+def find_in_flight(rotors: Rotors, points: int, airspeed: Array | None = None) -> InFlight:
+    """Return trim and matrices of points that have no reservations, and the trims of others as far as there are any.
 
     Parameters
     ----------
@@ -72,7 +77,7 @@ def find_in_flight(rotors: Rotors, points: int, airspeed: Array | None = None) -
     """
     found = rotors.in_flight(points, airspeed)
     none = np.full(points, "", dtype=object)
-    state = dict(zip(UNKNOWNS, found.state, strict=True))
+    state, before = (dict(zip(UNKNOWNS, part, strict=True)) for part in (found.state, found.before))
     trim = Trim(
         **state,
         thrust=found.thrust,
@@ -83,4 +88,4 @@ def find_in_flight(rotors: Rotors, points: int, airspeed: Array | None = None) -
         iterations=found.iterations,
         inflow=np.zeros(points),
     )
-    return _InFlight(found.served, trim, found.matrices)
+    return InFlight(found.served, trim, found.matrices, found.trimmed, before)

@@ -156,6 +156,27 @@ def solve_trim(
         return _settle(balance, search.state, search.before, search.reason, search.iterations, search.last)
 
 
+def settle_trim(
+    sections: BladeSections,
+    quantities: Mapping[str, Any],
+    options: Options,
+    target: Target,
+    begun: tuple[State, State, Array],
+) -> Settled:
+    """Return the trim of points whose unknowns are known, and what is to be said of it, see `solve_trim`.
+
+    Parameters
+    ----------
+    begun : (State, State, array (points,))
+        The unknowns at the trim and before the last step, and the number of steps.
+    """
+    state, before, iterations = begun
+    points = len(iterations)
+    balance = balance_of(sections, quantities, options, target, points)
+    with np.errstate(all="ignore"):
+        return _settle(balance, state, before, np.full(points, "", dtype=object), iterations)
+
+
 def balance_of(
     sections: BladeSections, quantities: Mapping[str, Any], options: Options, target: Target, points: int
 ) -> Balance:
@@ -421,7 +442,10 @@ def _real_trim(balance: Balance, few: BladeSections) -> Trim:
     if not serves_in_flight(balance, few):
         return solve_trim(sections, few, balance.quantities, options, balance.target, points).trim
     found = find_in_flight(rotors_of(balance), points)
-    left = np.flatnonzero(~found.served)
+    found.trim.converged[:] = (
+        found.trimmed
+    )  # what is to be said of these trims is found after the complex step
+    left = np.flatnonzero(~found.trimmed)
     if len(left):
         target = {"collective": balance.target.collective, "load": balance.target.load}
         own = solve_trim(
