@@ -11,6 +11,7 @@ from click.testing import CliRunner, Result
 
 import proprotor as pp
 from proprotor.commands.main import main
+from proprotor.study.batch import Analysis
 from tests.csv_files import without_comments
 
 KT = 1852 / 3600
@@ -505,3 +506,17 @@ def test_shares_of_the_variance_of_a_saltelli_sample_have_their_intervals():
         assert f"{record['with interactions ± (%)']:.1f}" in table
     stable = run("study", "xv15-uncoupled", *sample, "--speed", "100:140:20kt").stdout
     assert "shares of the variance" not in stable.lower() or "No shares of the variance" in stable
+
+
+def test_an_interrupted_study_says_that_its_checkpoint_goes_on(tmp_path, monkeypatch):
+    def stops(*_):
+        raise KeyboardInterrupt
+
+    asked = ("study", "xv15-uncoupled", "--vary", "rotor.precone=1 deg, 2 deg", "--speed", "300 kt")
+    with monkeypatch.context() as patch:
+        patch.setattr(Analysis, "__call__", stops)
+        alone, kept = run(*asked), run(*asked, "--checkpoint", tmp_path / "batches")
+    assert alone.exit_code == kept.exit_code == 130
+    assert alone.stderr.strip() == "interrupted; no file was left half-written"
+    assert "batches keeps all finished batches, and the same command goes on" in kept.stderr
+    assert run(*asked, "--checkpoint", tmp_path / "batches").exit_code == 0

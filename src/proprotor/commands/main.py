@@ -64,8 +64,9 @@ def errors_as_messages() -> Iterator[None]:
         yield
     except InputError as error:
         raise _UnusableInput(str(error)) from None
-    except KeyboardInterrupt:
-        raise _Interrupted("interrupted; no file was left half-written") from None
+    except KeyboardInterrupt as stopped:
+        told = ["interrupted", "no file was left half-written", *getattr(stopped, "__notes__", ())]
+        raise _Interrupted("; ".join(told)) from None
     except OSError as error:
         if error.errno == errno.EPIPE:  # a reader such as `head` has left: click ends quietly
             raise

@@ -109,7 +109,14 @@ def study(
         found = _repeated(request) or _asked(request, **asked)
     case, request = found["case"], found.pop("request")
     with output.one_message("--checkpoint", checkpoint):
-        results = study_of(**found, workers=workers, checkpoint=checkpoint)
+        try:
+            results = study_of(**found, workers=workers, checkpoint=checkpoint)
+        except KeyboardInterrupt as stopped:
+            if checkpoint is not None:
+                stopped.add_note(
+                    f"{checkpoint} keeps all finished batches, and the same command goes on with them"
+                )
+            raise
     with waiting("Writing"):
         table = StudyTable(results)
         _write(results, files, save)

@@ -1,5 +1,6 @@
 /* Eigenvalues and right vectors of many small real matrices at once: one matrix in each lane of a vector register. */
 
+#include "columns.h"
 #include "eigen.h"
 #include "motion.h"
 
@@ -108,10 +109,7 @@ void eigenvalues(int n, ptrdiff_t count, const double *matrices, double *values,
     ptrdiff_t size = (ptrdiff_t)n * n;
     struct room room = room_of(n, work, vectors != NULL);
     for (ptrdiff_t first = 0; first < count; first += LANES) {
-        for (int lane = 0; lane < LANES; lane++) {
-            const double *matrix = matrices + size * (first + lane < count ? first + lane : first);
-            for (ptrdiff_t k = 0; k < size; k++) ((double *)room.h)[k * LANES + lane] = matrix[k];
-        }
+        load_row(matrices, size, first, count, size, room.h);
         lanes scale;
         whole failed = solve(n, room, &scale);
         store_values(n, room, scale, failed, count - first, values + 2 * first * n, handed_over + first);

@@ -9,16 +9,14 @@
 
 void load_equations(int n, int count_held, const int32_t *held, ptrdiff_t first, ptrdiff_t count, const double *const *matrices, lanes *equations)
 {
-    int wide = 2 * n + count_held;
-    for (int lane = 0; lane < LANES; lane++) {
-        ptrdiff_t start = (first + lane < count ? first + lane : count - 1) * n * n;
-        const double *mass = matrices[0] + start, *damping = matrices[1] + start, *stiffness = matrices[2] + start;
-        for (int i = 0; i < n; i++) {
-            double *row = (double *)(equations + (ptrdiff_t)i * wide) + lane;
-            for (int j = 0; j < n; j++) row[j * LANES] = mass[i * n + j];
-            for (int j = 0; j < count_held; j++) row[(n + j) * LANES] = stiffness[i * n + held[j]];
-            for (int j = 0; j < n; j++) row[(n + count_held + j) * LANES] = damping[i * n + j];
-        }
+    const double *mass = matrices[0], *damping = matrices[1], *stiffness = matrices[2];
+    ptrdiff_t size = (ptrdiff_t)n * n;
+    for (ptrdiff_t i = 0; i < n; i++) {
+        lanes *row = equations + i * (2 * n + count_held), *last = row + n + count_held;
+        load_row(mass + i * n, size, first, count, n, row);
+        load_row(stiffness + i * n, size, first, count, n, last); /* until the damping takes this place */
+        for (int j = 0; j < count_held; j++) row[n + j] = last[held[j]];
+        load_row(damping + i * n, size, first, count, n, last);
     }
 }
 

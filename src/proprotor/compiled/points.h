@@ -56,30 +56,49 @@ static void note_air(const struct blade *blade, ptrdiff_t point, ptrdiff_t point
     store_where(air->where, mach, air->stations + points * stations + k, stations, point, points);
 }
 
-/* Add the radial moments of the loads of a segment, and note the air of each station. */
+#define AT_ONCE 8 /* stations */
+
+/* Find the loads of a station, and note its air. */
+static void find_loads(const struct blade *blade, ptrdiff_t point, ptrdiff_t points, ptrdiff_t k, const lanes *line, lanes *q, lanes *loads, struct air *air)
+{
+    lanes r = load(&blade->radius, point, points, k);
+    q[Q_CHORD] = load(&blade->chord, point, points, k);
+    q[Q_SECTION_PITCH] = q[Q_PITCH] + load(&blade->twist, point, points, k);
+    q[Q_SQUARE_RATIO] = load(&blade->square_ratio, point, points, k);
+    q[Q_CUBE_RATIO] = load(&blade->cube_ratio, point, points, k);
+    q[Q_LIFT_SLOPE] = load(&blade->lift_slope, point, points, k);
+    q[Q_ZERO_LIFT_ANGLE] = load(&blade->zero_lift_angle, point, points, k);
+    q[Q_DRAG_COEFFICIENT] = load(&blade->drag, point, points, k);
+    q[Q_MOMENT_COEFFICIENT] = load(&blade->moment, point, points, k);
+    q[Q_TANGENTIAL_VELOCITY] = line[LINE_UT_0] + r * line[LINE_UT_1];
+    q[Q_AXIAL_VELOCITY] = line[LINE_UP_0] + r * line[LINE_UP_1];
+    q[Q_RADIAL_VELOCITY] = line[LINE_UR_0];
+    q[Q_SECTION_SPIN] = line[LINE_SPIN];
+    section_loads(q, loads);
+    note_air(blade, point, points, k, r, loads[LOADS], loads[LOADS + 1], air);
+}
+
+/* Add the radial moments of the loads of a segment. Each moment is read and written once for some stations: to store numbers
+   takes longer than to multiply and add. */
 static void add_moments(const struct blade *blade, ptrdiff_t point, ptrdiff_t points, ptrdiff_t segment, const lanes *line, lanes *q, lanes *moments, struct air *air)
 {
-    lanes loads[SECTION_LOADS_RESULTS];
-    for (ptrdiff_t k = blade->ends[segment]; k < blade->ends[segment + 1]; k++) {
-        lanes r = load(&blade->radius, point, points, k);
-        q[Q_CHORD] = load(&blade->chord, point, points, k);
-        q[Q_SECTION_PITCH] = q[Q_PITCH] + load(&blade->twist, point, points, k);
-        q[Q_SQUARE_RATIO] = load(&blade->square_ratio, point, points, k);
-        q[Q_CUBE_RATIO] = load(&blade->cube_ratio, point, points, k);
-        q[Q_LIFT_SLOPE] = load(&blade->lift_slope, point, points, k);
-        q[Q_ZERO_LIFT_ANGLE] = load(&blade->zero_lift_angle, point, points, k);
-        q[Q_DRAG_COEFFICIENT] = load(&blade->drag, point, points, k);
-        q[Q_MOMENT_COEFFICIENT] = load(&blade->moment, point, points, k);
-        q[Q_TANGENTIAL_VELOCITY] = line[LINE_UT_0] + r * line[LINE_UT_1];
-        q[Q_AXIAL_VELOCITY] = line[LINE_UP_0] + r * line[LINE_UP_1];
-        q[Q_RADIAL_VELOCITY] = line[LINE_UR_0];
-        q[Q_SECTION_SPIN] = line[LINE_SPIN];
-        section_loads(q, loads);
-        for (int power = 0; power < POWERS; power++) {
-            lanes weight = load(&blade->weights[power], point, points, k);
-            for (int load = 0; load < LOADS; load++) moments[load * POWERS + power] += weight * loads[load];
+    lanes loads[AT_ONCE][SECTION_LOADS_RESULTS], weights[AT_ONCE][POWERS];
+    ptrdiff_t end = blade->ends[segment + 1];
+    for (ptrdiff_t first = blade->ends[segment]; first < end; first += AT_ONCE) {
+        int count = (int)(end - first < AT_ONCE ? end - first : AT_ONCE);
+        for (int k = 0; k < count; k++) {
+            find_loads(blade, point, points, first + k, line, q, loads[k], air);
+            for (int power = 0; power < POWERS; power++) weights[k][power] = load(&blade->weights[power], point, points, first + k);
         }
-        note_air(blade, point, points, k, r, loads[LOADS], loads[LOADS + 1], air);
+        for (int load = 0; load < LOADS; load++) {
+            lanes *own = moments + load * POWERS, zeroth = own[0], first_power = own[1], second = own[2];
+            for (int k = 0; k < count; k++) {
+                zeroth += weights[k][0] * loads[k][load];
+                first_power += weights[k][1] * loads[k][load];
+                second += weights[k][2] * loads[k][load];
+            }
+            own[0] = zeroth, own[1] = first_power, own[2] = second;
+        }
     }
 }
 

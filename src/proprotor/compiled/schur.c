@@ -9,6 +9,9 @@
 
 #define ITERATIONS 40 /* for each eigenvalue */
 #define BALANCE_SWEEPS 6
+#define PATIENCE 8 /* sweeps from the first row of a block before others are tried */
+#define EXPONENT 0x7ff0000000000000 /* of a number, in place */
+#define TWICE_ONE 0x7fe0000000000000 /* twice the exponent of one: less that of a power of two, it is that of its inverse */
 
 /* Apply the reflection I - factor * v * v' to vectors of `count` entries. */
 static void reflect(lanes *first, ptrdiff_t along, ptrdiff_t across, int count, int vectors, const lanes *v, lanes factor)
@@ -96,7 +99,7 @@ struct progress {
     whole low, high, steps, failed;
 };
 
-/* Return where the subdiagonal entry of row k is as good as zero. */
+/* Return where a subdiagonal entry of row k that is small beside the diagonal is as good as zero. */
 static whole is_small(int n, const lanes *h, int k)
 {
     lanes under = magnitude(AT(k, k - 1)), over = magnitude(AT(k - 1, k));
@@ -109,8 +112,7 @@ static whole is_small(int n, const lanes *h, int k)
     lanes most = larger(here, apart), least = smaller(here, apart);
     lanes product = larger(under, over) * smaller(under, over) * (most + larger(under, over));
     lanes allowed = EPSILON * least * most * (most + larger(under, over));
-    whole conservative = (product <= larger(allowed, all(TINY)));
-    return (under <= TINY) | ((under <= bound) & conservative);
+    return (under <= bound) & (product <= larger(allowed, all(TINY)));
 }
 
 /* Set small subdiagonal entries to zero and find the first row of the last block of each lane. */
@@ -119,7 +121,10 @@ static void divide(int n, lanes *h, struct progress *at)
     int last = greatest(at->high);
     at->low = every(0);
     for (int k = 1; k <= last; k++) {
-        whole small = is_small(n, h, k) & (at->high >= k);
+        lanes under = magnitude(AT(k, k - 1)), size = magnitude(AT(k - 1, k - 1)) + magnitude(AT(k, k));
+        whole small = under <= TINY, doubtful = ((under <= EPSILON * size) | (size == 0.0)) & ~small & (at->high >= k);
+        if (any(doubtful)) small |= doubtful & is_small(n, h, k);
+        small &= at->high >= k;
         AT(k, k - 1) = choose(small, all(0.0), AT(k, k - 1));
         at->low = pick(small, every(k), at->low);
     }
@@ -151,150 +156,154 @@ static void make_triangular(int n, double *h, double *z, int lane, ptrdiff_t k, 
     }
 }
 
-/* Take the eigenvalues of blocks of one or two rows; return whether a lane had such a block. */
-static int take(int n, double *h, double *z, struct progress *at, double *real, double *imaginary)
+/* Take the eigenvalues of a block of one or two rows of a lane. */
+static void take_block(int n, double *h, double *z, int lane, ptrdiff_t low, ptrdiff_t high, double *real, double *imaginary)
 {
-    int taken = 0;
-    for (int lane = 0; lane < LANES; lane++) {
-        ptrdiff_t high = at->high[lane];
-        if (high < 0 || high - at->low[lane] > 1) continue;
-        double *wr = real + high * LANES + lane, *wi = imaginary + high * LANES + lane;
-        if (high == at->low[lane]) {
-            *wr = OF_LANE(high, high);
-            *wi = 0.0;
-        } else {
-            double d = OF_LANE(high, high), a = OF_LANE(high - 1, high - 1);
-            double product = OF_LANE(high, high - 1) * OF_LANE(high - 1, high);
-            double mean = 0.5 * (a - d), inside = mean * mean + product, length = sqrt(fabs(inside));
-            if (inside >= 0.0) {
-                length = mean + copysign(length, mean);
-                wr[-LANES] = d + length;
-                wr[0] = length != 0.0 ? d - product / length : d;
-                wi[-LANES] = wi[0] = 0.0;
-                if (z) make_triangular(n, h, z, lane, high, length);
-            } else {
-                wr[-LANES] = wr[0] = d + mean;
-                wi[-LANES] = length;
-                wi[0] = -length;
-            }
-        }
-        at->high[lane] = at->low[lane] - 1;
-        at->steps[lane] = 0;
-        taken = 1;
+    double *wr = real + high * LANES + lane, *wi = imaginary + high * LANES + lane;
+    if (high == low) {
+        *wr = OF_LANE(high, high);
+        *wi = 0.0;
+        return;
     }
-    return taken;
+    double d = OF_LANE(high, high), a = OF_LANE(high - 1, high - 1);
+    double product = OF_LANE(high, high - 1) * OF_LANE(high - 1, high);
+    double mean = 0.5 * (a - d), inside = mean * mean + product, length = sqrt(fabs(inside));
+    if (inside >= 0.0) {
+        length = mean + copysign(length, mean);
+        wr[-LANES] = d + length;
+        wr[0] = length != 0.0 ? d - product / length : d;
+        wi[-LANES] = wi[0] = 0.0;
+        if (z) make_triangular(n, h, z, lane, high, length);
+    } else {
+        wr[-LANES] = wr[0] = d + mean;
+        wi[-LANES] = length;
+        wi[0] = -length;
+    }
 }
 
-/* The two shifts as trace and determinant of a matrix of two rows: its four numbers. */
-struct shifts {
-    lanes first, second, product;
+/* Take the eigenvalues of blocks of one or two rows until the last block of each lane has more. */
+static void take(int n, double *h, double *z, struct progress *at, double *real, double *imaginary)
+{
+    for (int lane = 0; lane < LANES; lane++) {
+        ptrdiff_t low = at->low[lane], high = at->high[lane];
+        if (high < 0 || high - low > 1) continue;
+        while (high >= 0 && high - low <= 1) {
+            take_block(n, h, z, lane, low, high, real, imaginary);
+            low = high = low - 1;
+            while (low > 0 && OF_LANE(low, low - 1) != 0.0) low--;
+        }
+        at->low[lane] = low;
+        at->high[lane] = high;
+        at->steps[lane] = 0;
+    }
+}
+
+/* Where the sweep of each lane starts, what it makes of the subdiagonal entry there, and the column that it starts from. */
+struct bulge {
+    whole start;
+    lanes before, a, b, c;
 };
 
-static struct shifts shifts_of(int n, const double *h, const struct progress *at)
+/* Begin a sweep in a lane: put the first column of the product with both shifts into the column before the block, or where
+   there is none into `bulge`. A sweep starts at the first row of the block; where many did not help, after the last pair of
+   small subdiagonal entries. */
+static void start_lane(int n, double *h, const struct progress *at, int lane, struct bulge *bulge)
 {
-    struct shifts found = {{0}, {0}, {0}};
-    for (int lane = 0; lane < LANES; lane++) {
-        int64_t high = at->high[lane];
-        if (high < 2) continue;
-        double first = OF_LANE(high, high), second = OF_LANE(high - 1, high - 1);
-        double product = OF_LANE(high, high - 1) * OF_LANE(high - 1, high);
-        if (at->steps[lane] % 10 == 9) {
-            double size = fabs(OF_LANE(high, high - 1)) + fabs(OF_LANE(high - 1, high - 2));
-            first = second = 0.75 * size + first;
-            product = -0.4375 * size * size;
-        }
-        found.first[lane] = first;
-        found.second[lane] = second;
-        found.product[lane] = product;
+    int64_t low = at->low[lane], high = at->high[lane], m = at->steps[lane] < PATIENCE ? low : high - 2;
+    /* The shifts as trace and determinant of a matrix of two rows: its four numbers. */
+    double first = OF_LANE(high, high), second = OF_LANE(high - 1, high - 1), a, b, c;
+    double product = OF_LANE(high, high - 1) * OF_LANE(high - 1, high);
+    if (at->steps[lane] % 10 == 9) {
+        double size = fabs(OF_LANE(high, high - 1)) + fabs(OF_LANE(high - 1, high - 2));
+        first = second = 0.75 * size + first;
+        product = -0.4375 * size * size;
     }
-    return found;
+    for (;; m--) {
+        double here = OF_LANE(m, m), next = OF_LANE(m + 1, m + 1), under = OF_LANE(m + 1, m);
+        double to_first = first - here, to_second = second - here;
+        a = to_first * to_second - product + OF_LANE(m, m + 1) * under;
+        b = under * (next - here - to_first - to_second), c = under * OF_LANE(m + 2, m + 1);
+        if (m == low) break;
+        double size = fabs(OF_LANE(m - 1, m - 1)) + fabs(here) + fabs(next);
+        if (fabs(OF_LANE(m, m - 1)) * (fabs(b) + fabs(c)) <= EPSILON * fabs(a) * size) break;
+    }
+    bulge->start[lane] = m;
+    if (m == 0) {
+        bulge->a[lane] = a, bulge->b[lane] = b, bulge->c[lane] = c;
+        return;
+    }
+    if (m > low) bulge->before[lane] = OF_LANE(m, m - 1) * (b != 0.0 || c != 0.0 ? -fabs(a) / hypot(a, hypot(b, c)) : 1.0);
+    OF_LANE(m, m - 1) = a, OF_LANE(m + 1, m - 1) = b, OF_LANE(m + 2, m - 1) = c;
 }
 
-/* Apply the reflection of two or three columns to some rows. */
-static inline void turn_columns(lanes *row, ptrdiff_t n, int rows, int columns, lanes factor, lanes v1, lanes v2)
+/* A reflection I - (1, v1, v2)' * (factor, w1, w2) of two or three rows and columns. */
+struct turn {
+    int count;
+    lanes factor, v1, v2, w1, w2;
+};
+
+/* Apply a reflection to vectors of two or three numbers `along` apart; the vectors are `across` apart. */
+static inline void turn_vectors(const struct turn *turn, lanes *vector, ptrdiff_t along, ptrdiff_t across, int vectors)
 {
-    lanes w1 = factor * v1, w2 = factor * v2;
-    for (; rows > 0; rows--, row += n) {
-        lanes sum = row[0] + v1 * row[1];
-        if (columns == 3) sum += v2 * row[2];
-        row[0] -= factor * sum, row[1] -= w1 * sum;
-        if (columns == 3) row[2] -= w2 * sum;
+    lanes factor = turn->factor, v1 = turn->v1, v2 = turn->v2, w1 = turn->w1, w2 = turn->w2, *end = vector + across * vectors;
+    if (turn->count == 2)
+        for (; vector != end; vector += across) {
+            lanes sum = vector[0] + v1 * vector[along];
+            vector[0] -= factor * sum, vector[along] -= w1 * sum;
+        }
+    else
+        for (; vector != end; vector += across) {
+            lanes sum = vector[0] + v1 * vector[along] + v2 * vector[2 * along];
+            vector[0] -= factor * sum, vector[along] -= w1 * sum, vector[2 * along] -= w2 * sum;
+        }
+}
+
+/* Find the reflection that moves the bulge on from row k, which turns the column before it into its first entry. Where the
+   bulge of a lane is elsewhere there are zeros, and the reflection changes nothing. */
+static inline struct turn next_turn(int n, lanes *h, const struct bulge *bulge, int last, int k)
+{
+    lanes head = bulge->a, b = bulge->b, c = bulge->c;
+    if (k > 0) head = AT(k, k - 1), b = AT(k + 1, k - 1), c = k + 2 < n ? AT(k + 2, k - 1) : all(0.0);
+    lanes rest = larger(magnitude(b), magnitude(c)), size = larger(magnitude(head), rest);
+    whole needed = rest > 0.0;
+    lanes scale = (lanes)((whole)size & EXPONENT), inverse = (lanes)(every(TWICE_ONE) - (whole)scale);
+    lanes a = choose(needed, head * inverse, all(1.0));
+    b *= inverse, c *= inverse;
+    lanes length = -copy_sign(root(a * a + b * b + c * c), a), sum = a - length;
+    lanes both = 1.0 / (length * sum), beside = both * length;
+    struct turn found = {.count = k + 2 <= last ? 3 : 2};
+    found.factor = choose(needed, -sum * sum * both, all(0.0));
+    found.v1 = b * beside, found.v2 = c * beside;
+    found.w1 = found.factor * found.v1, found.w2 = found.factor * found.v2;
+    if (k > 0) {
+        AT(k, k - 1) = choose(bulge->start == k, bulge->before, choose(needed, length * scale, head));
+        AT(k + 1, k - 1) = all(0.0);
+        if (k + 2 < n) AT(k + 2, k - 1) = all(0.0);
     }
+    return found;
 }
 
 /* One sweep of both shifts through the block of each lane; for vectors z takes part, and all of the matrix. */
 static void sweep(int n, lanes *h, lanes *z, struct progress *at)
 {
-    struct shifts shift = shifts_of(n, (const double *)h, at);
-    whole active = at->high >= 0, start = at->low;
-    int first = least(pick(active, at->low, every(n))), last = greatest(at->high);
+    struct bulge bulge = {every(-1), {0}, {0}, {0}, {0}};
+    whole active = at->high >= 0;
+    for (int lane = 0; lane < LANES; lane++)
+        if (active[lane]) start_lane(n, (double *)h, at, lane, &bulge);
+    int last = greatest(at->high), first = least(pick(active, at->low, every(n)));
     int top = z ? 0 : first, end = z ? n - 1 : last;
-    lanes p = {0}, q = {0}, r = {0};
-    /* Start after the last pair of small subdiagonal entries. */
-    whole open = active;
-    for (int m = last - 2; m >= first && any(open); m--) {
-        whole inside = open & (m <= at->high - 2) & (m >= at->low);
-        if (!any(inside)) continue;
-        lanes here = AT(m, m), next = AT(m + 1, m + 1), under = AT(m + 1, m);
-        lanes to_first = shift.first - here, to_second = shift.second - here;
-        lanes new_p = to_first * to_second - shift.product + AT(m, m + 1) * under;
-        lanes new_q = under * (next - here - to_first - to_second);
-        lanes new_r = under * AT(m + 2, m + 1);
-        p = choose(inside, new_p, p), q = choose(inside, new_q, q), r = choose(inside, new_r, r);
-        start = pick(inside, every(m), start);
-        whole begins = m == at->low;
-        if (m > 0) {
-            lanes left = magnitude(AT(m, m - 1)) * (magnitude(new_q) + magnitude(new_r));
-            lanes right = magnitude(new_p) * (magnitude(AT(m - 1, m - 1)) + magnitude(here) + magnitude(next));
-            begins |= left <= EPSILON * right;
-        }
-        open &= ~(inside & begins);
-    }
-    for (int k = least(pick(active, start, every(n))); k < last; k++) {
-        whole at_start = start == k, works = active & (start <= k) & (k < at->high), three = works & (k + 1 < at->high);
-        lanes a = p, b = q, c = r;
-        if (k > 0) {
-            a = choose(at_start, a, AT(k, k - 1)), b = choose(at_start, b, AT(k + 1, k - 1));
-            c = choose(at_start, c, k + 2 < n ? AT(k + 2, k - 1) : all(0.0));
-        }
-        c = choose(three, c, all(0.0));
-        lanes size = larger(magnitude(a), larger(magnitude(b), magnitude(c)));
-        whole needed = works & (larger(magnitude(b), magnitude(c)) > 0.0);
-        lanes scale = 1.0 / choose(needed, size, all(1.0));
-        a *= scale, b *= scale, c *= scale;
-        lanes length = -copy_sign(root(a * a + b * b + c * c), a);
-        lanes factor = choose(needed, (length - a) / choose(needed, length, all(1.0)), all(0.0));
-        lanes inverse = 1.0 / choose(needed, a - length, all(1.0));
-        lanes v1 = choose(needed, b * inverse, all(0.0)), v2 = choose(needed, c * inverse, all(0.0));
-        lanes w1 = factor * v1, w2 = factor * v2;
-        if (k > 0) {
-            whole chased = needed & ~at_start;
-            AT(k, k - 1) = choose(chased, length * size, choose(needed, AT(k, k - 1) * (1.0 - factor), AT(k, k - 1)));
-            AT(k + 1, k - 1) = choose(chased, all(0.0), AT(k + 1, k - 1));
-            if (k + 2 < n) AT(k + 2, k - 1) = choose(chased, all(0.0), AT(k + 2, k - 1));
-        }
+    for (int k = least(pick(active, bulge.start, every(n))); k < last; k++) {
+        struct turn turn = next_turn(n, h, &bulge, last, k);
         int bottom = k + 3 < last ? k + 3 : last;
-        if (k + 2 <= last) {
-            for (int j = k; j <= end; j++) {
-                lanes sum = AT(k, j) + v1 * AT(k + 1, j) + v2 * AT(k + 2, j);
-                AT(k, j) -= factor * sum, AT(k + 1, j) -= w1 * sum, AT(k + 2, j) -= w2 * sum;
-            }
-            turn_columns(&AT(top, k), n, bottom - top + 1, 3, factor, v1, v2);
-            if (z) turn_columns(z + k, n, n, 3, factor, v1, v2);
-        } else {
-            for (int j = k; j <= end; j++) {
-                lanes sum = AT(k, j) + v1 * AT(k + 1, j);
-                AT(k, j) -= factor * sum, AT(k + 1, j) -= w1 * sum;
-            }
-            turn_columns(&AT(top, k), n, bottom - top + 1, 2, factor, v1, v2);
-            if (z) turn_columns(z + k, n, n, 2, factor, v1, v2);
-        }
+        turn_vectors(&turn, &AT(k, k), n, 1, end - k + 1);
+        turn_vectors(&turn, &AT(top, k), 1, n, bottom - top + 1);
+        if (z) turn_vectors(&turn, z + k, 1, n, n);
     }
 }
 
 whole schur(int n, lanes *h, lanes *z, lanes *real, lanes *imaginary, whole failed)
 {
-    struct progress progress = {every(0), every(0), every(0), failed}, *at = &progress;
+    struct progress progress = {.failed = failed}, *at = &progress;
     if (z)
         for (ptrdiff_t k = 0; k < (ptrdiff_t)n * n; k++) z[k] = all(k % (n + 1) == 0 ? 1.0 : 0.0);
     balance(n, h, z);
@@ -303,7 +312,7 @@ whole schur(int n, lanes *h, lanes *z, lanes *real, lanes *imaginary, whole fail
     at->steps = every(0);
     while (any(at->high >= 0)) {
         divide(n, h, at);
-        if (take(n, (double *)h, (double *)z, at, (double *)real, (double *)imaginary)) continue;
+        take(n, (double *)h, (double *)z, at, (double *)real, (double *)imaginary);
         whole tired = (at->high >= 0) & (at->steps >= ITERATIONS);
         at->failed |= tired;
         at->high = pick(tired, every(-1), at->high);

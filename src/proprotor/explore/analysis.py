@@ -21,6 +21,8 @@ from proprotor.stability.sweep import mode_columns
 from proprotor.tables.sweep_summary import UnstableRange, leaps, unstable_ranges
 from proprotor.typing import Array, Dataset
 
+_NEAREST = 4  # points through which a cubic goes
+
 
 @dataclass(frozen=True, eq=False)
 class LiveModes:
@@ -78,7 +80,7 @@ def live_modes(
     """Return the modes of a case, or of the case with other inputs, along airspeeds.
 
     Modes are those of `Case.sweep`, with the same names. To find the ends of unstable ranges, roots are followed from
-    point to point. Where a step is too large to follow the roots, the matrices within the step come from splines
+    point to point. Where a step is too large to follow the roots, the matrices within the step come from cubics
     through the matrices at the points, and not from new trims. No number on the page comes from these matrices.
 
     Parameters
@@ -119,24 +121,34 @@ def live_modes(
 
 
 def _between(model: LinearModel) -> Any:
-    """Return a function that gives models between the points of a model, by cubic splines of its matrices.
+    """Return a function that gives models between the points of a model, by cubics through the nearest four points.
 
-    Return None if there are too few points for splines.
+    Return None if there are too few points for cubics.
     """
-    from scipy.interpolate import CubicSpline  # here, because scipy.interpolate takes long to import
-
     good = np.flatnonzero(model.trim.converged)
-    if len(good) < 4:
+    if len(good) < _NEAREST:
         return None
-    matrices = np.stack([model.M, model.C, model.K], axis=1)[good]
-    spline = CubicSpline(model.airspeed[good], matrices)
 
     def linearize(positions: Array) -> LinearModel:
-        M, C, K = np.moveaxis(spline(positions), 1, 0)
+        known = model.airspeed[good]
+        first = np.clip(np.searchsorted(known, positions) - _NEAREST // 2, 0, len(good) - _NEAREST)
+        places = first[:, None] + np.arange(_NEAREST)
+        weights = _weights(positions, known[places])
+        M, C, K = (
+            np.einsum("pk,pkij->pij", weights, matrix[good[places]]) for matrix in (model.M, model.C, model.K)
+        )
         parts: dict[str, Any] = dict.fromkeys(("B", "rotor", "left", "shapes"))
         return replace(model, airspeed=positions, M=M, C=C, K=K, **parts)
 
     return linearize
+
+
+def _weights(positions: Array, known: Array) -> Array:
+    """Return the weights (n, k) of values at known positions (n, k) in Lagrange's polynomial at positions (n,)."""
+    apart = known[:, :, None] - known[:, None] + np.eye(known.shape[1])
+    from_known = positions[:, None] - known
+    others = np.where(np.eye(known.shape[1], dtype=bool), 1.0, from_known[:, None, :])
+    return np.asarray(others.prod(axis=-1) / apart.prod(axis=-1))
 
 
 def _named(branches: Branches, line: ParameterLine, anchors: Array) -> NamedStates:
