@@ -6,7 +6,8 @@ from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
 
-gc.set_threshold(50_000)  # new objects before cycles are looked for: at 700, its usual number, a quarter of the time
+# New objects before cycles are looked for: at 700, its usual number, that takes a quarter of the time.
+gc.set_threshold(50_000)
 sys.path[:0] = [str(Path(__file__).parent / "extensions"), str(Path(__file__).parents[1])]
 
 project = "proprotor"

@@ -17,7 +17,7 @@ settings.register_profile("proprotor", deadline=None)
 settings.load_profile("proprotor")
 
 
-# New objects after which the garbage collector looks for cycles: at 700, its usual number, it takes a tenth of the tests' time.
+# New objects before the garbage collector looks for cycles: at 700, its usual number, that takes a tenth of the time.
 OBJECTS = 20_000
 
 

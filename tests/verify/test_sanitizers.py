@@ -12,7 +12,7 @@ pytestmark = pytest.mark.verify
 
 ROOT = Path(__file__).parents[2]
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g")
-LESS = "-O1"  # less than the library has: sooner compiled, and fewer accesses are optimised away before they are checked
+LESS = "-O1"  # less than the library has: sooner compiled, and fewer accesses are optimised away unchecked
 
 
 def compiler():
