@@ -512,7 +512,7 @@ def test_an_interrupted_study_says_that_its_checkpoint_goes_on(tmp_path, monkeyp
     def stops(*_):
         raise KeyboardInterrupt
 
-    asked = ("study", "xv15-uncoupled", "--vary", "rotor.precone=1,2 deg", "--speed", "300 kt")
+    asked = ("study", "xv15-uncoupled", "--vary", "rotor.precone=1 deg, 2 deg", "--speed", "300 kt")
     with monkeypatch.context() as patch:
         patch.setattr(Analysis, "__call__", stops)
         alone, kept = run(*asked), run(*asked, "--checkpoint", tmp_path / "batches")
