@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from proprotor.compiled.columns import address
+from proprotor.compiled.columns import address, start_of
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
@@ -35,7 +35,7 @@ def _answers(function: str, sprung: Array, one: Sequence[Array], other: Sequence
     kept = [np.ascontiguousarray(matrix, dtype=float) for matrix in (*one, *other)]
     points, size, _ = kept[0].shape
     rows, found = np.ascontiguousarray(sprung, dtype=bool), np.zeros(points, dtype=bool)
-    pairs = [(ctypes.c_void_p * 2)(*(matrix.ctypes.data for matrix in pair)) for pair in (kept[:2], kept[2:])]
+    pairs = [(ctypes.c_void_p * 2)(*map(start_of, pair)) for pair in (kept[:2], kept[2:])]
     getattr(library(), function)(
         ctypes.c_ssize_t(points), ctypes.c_int(size), address(rows), *pairs, address(found)
     )

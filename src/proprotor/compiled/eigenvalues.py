@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from proprotor.compiled.columns import address, lane_room
+from proprotor.compiled.columns import address, lane_room, start_of
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
@@ -92,7 +92,7 @@ def _of_motion(
         ctypes.c_int(len(held)),
         address(places),
         ctypes.c_ssize_t(count),
-        (ctypes.c_void_p * 3)(*(part.ctypes.data for part in parts)),
+        (ctypes.c_void_p * 3)(*map(start_of, parts)),
         address(values),
         address(right) if vectors else None,
         address(rest),

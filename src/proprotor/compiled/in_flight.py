@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from proprotor.compiled.columns import address, place_of
+from proprotor.compiled.columns import address, place_of, start_of
 from proprotor.compiled.plans import (
     FIRST_POINTS,
     OF_POINTS,
@@ -132,7 +132,7 @@ class Rotors:
         matrices = {name: np.empty((points, *shape)) for name, shape in self._shapes.items()}
         state, before, (thrust, torque), (served, trimmed) = numbers[:4], numbers[4:8], numbers[8:], kinds
         arrays = (state, before, thrust, torque, counts, served, trimmed, *matrices.values())
-        places = _PLACES(*(array.__array_interface__["data"][0] for array in arrays))
+        places = _PLACES(*map(start_of, arrays))
         self._call(ctypes.c_ssize_t(points), address(record), *self._asked, ctypes.byref(places))
         return InFlight(served, trimmed, state, before, thrust, torque, counts, matrices)
 

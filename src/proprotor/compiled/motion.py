@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from proprotor.compiled.columns import Column, address, column, lane_room
+from proprotor.compiled.columns import Column, address, column, lane_room, start_of
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
@@ -58,9 +58,9 @@ def on_support(matrices: Sequence[Array], support: Support) -> tuple[list[Array]
         ctypes.c_int(size),
         ctypes.c_int(support.modes),
         ctypes.c_int(inputs),
-        _POINTERS(*map(_start, given)),
+        _POINTERS(*map(start_of, given)),
         *support.places,
-        _POINTERS(*map(_start, found)),
+        _POINTERS(*map(start_of, found)),
         address(certain),
         address(room),
     )
@@ -92,13 +92,7 @@ def state_matrices(mass: Array, damping: Array, stiffness: Array, held: Sequence
         ctypes.c_int(len(held)),
         address(places),
         ctypes.c_ssize_t(points),
-        _POINTERS(*map(_start, given)),
+        _POINTERS(*map(start_of, given)),
         *map(address, (found, unsafe, room)),
     )
     return found, unsafe
-
-
-def _start(array: Array) -> int:
-    """Return where an array begins."""
-    start: int = array.__array_interface__["data"][0]
-    return start

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from proprotor.compiled.columns import address, place_of
+from proprotor.compiled.columns import address, place_of, start_of
 from proprotor.compiled.library import library
 from proprotor.typing import Array
 
@@ -133,7 +133,7 @@ class Blades:
         names = (*OF_POINTS, *plans.QUANTITIES)
         columns, kept = _columns(names, {**self.quantities, **self.of_points}, self.sides)
         record = np.empty(FIRST_POINTS + columns.size, dtype=np.intp)
-        record[0], record[1] = len(self.stations.ends) - 1, self.stations.ends.ctypes.data
+        record[0], record[1] = len(self.stations.ends) - 1, start_of(self.stations.ends)
         record[_FIRST_STATIONS:FIRST_POINTS] = self.stations.columns.ravel()
         record[FIRST_POINTS:] = columns.ravel()
         return record, kept
@@ -158,7 +158,7 @@ def _columns(
             numbers[place] = float(value)
     memory = np.array(numbers)
     columns = _side_by_side(len(names)).copy()
-    columns[:, 0] += memory.__array_interface__["data"][0]
+    columns[:, 0] += start_of(memory)
     for place, array in arrays.items():
         columns[place] = place_of(array)
     return columns, [memory, *arrays.values()]
@@ -241,9 +241,9 @@ def search_trim(
         )
     parts = found._asdict()
     del parts["arrived"]
-    places = {name: array.ctypes.data for name, array in parts.items() if array is not None}
+    places = {name: start_of(array) for name, array in parts.items() if array is not None}
     results = _Found(
-        state=state.ctypes.data, iterations=iterations.ctypes.data, active=arrived.ctypes.data, **places
+        state=start_of(state), iterations=start_of(iterations), active=start_of(arrived), **places
     )
     function_of(plans, "search_trim")(
         ctypes.c_ssize_t(points),
@@ -299,7 +299,7 @@ def matrices_of_rotor(
     record[0] = 0 if segments is None else len(segments["beyond_flap_hinge"])
     record[-columns.size :] = columns.ravel()
     found = {name: np.empty((points, *shape)) for name, shape in shapes.items()}
-    addresses = (ctypes.c_void_p * len(found))(*(matrix.ctypes.data for matrix in found.values()))
+    addresses = (ctypes.c_void_p * len(found))(*map(start_of, found.values()))
     function_of(plans, "matrices_of_rotor")(
         ctypes.c_ssize_t(points), address(record), ctypes.byref(layouts_of(plans)), ctypes.byref(addresses)
     )
@@ -317,7 +317,7 @@ def search_of(plans: ModuleType, search: Search) -> _Search:
     """Return a search as the library takes it."""
     unknowns, rows = (np.array(places, dtype=np.int32) for places in (search.unknowns, search.rows))
     _TABLES.extend((unknowns, rows))
-    found = _Search(len(search.unknowns), unknowns.ctypes.data, rows.ctypes.data, search.target)
+    found = _Search(len(search.unknowns), start_of(unknowns), start_of(rows), search.target)
     for name in ("diagonal", "unloaded", "most", "ends_near"):
         setattr(found, name, int(getattr(search, name)))
     for name, table in _layouts_of_trim(plans).items():
@@ -354,7 +354,7 @@ _TABLES: list[Array] = []  # stay in memory with the layouts
 def _layout(table: Sequence[Sequence[int]]) -> _Layout:
     places = np.array(table, dtype=np.int32)
     _TABLES.append(places)
-    return _Layout(*places.shape, places.ctypes.data)
+    return _Layout(*places.shape, start_of(places))
 
 
 def _results(table: Mapping[str, Sequence[Sequence[int]]]) -> range:

@@ -10,7 +10,7 @@ import ctypes
 
 import numpy as np
 
-from proprotor.compiled.columns import address
+from proprotor.compiled.columns import address, start_of
 from proprotor.compiled.eigenvalues import MOST_STATES
 from proprotor.compiled.library import library
 from proprotor.typing import Array
@@ -108,7 +108,7 @@ def screened_steps(
     change, numbers = np.empty(values.shape, dtype=complex), (position, _complex(values), error)
     own = (*_whole(block), *(np.ascontiguousarray(part) for part in numbers), change)
     arrays = (places, before, after, successor, *own)
-    scan = _Scan(states, count, points, level, *(part.ctypes.data for part in arrays))
+    scan = _Scan(states, count, points, level, *map(start_of, arrays))
     library().screen_steps(ctypes.byref(scan), *map(address, (weight, asked, onsets)))
     return asked, onsets
 
