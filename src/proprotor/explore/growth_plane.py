@@ -101,13 +101,10 @@ def _along_airspeeds(case: Case, axes: Mapping[str, Array], options: Mapping[str
     """Return growth, reasons and warnings (designs, airspeeds); the designs of all parts are built once."""
     ((name, values),) = ((path, given) for path, given in axes.items() if path != AIRSPEED)
     designs, speeds = case.vary({name: values[:, None]}), axes[AIRSPEED]
-    width = max(1, _AT_ONCE // len(values))
     found = []
-    for start in range(0, len(speeds), width):
-        some = np.broadcast_to(
-            speeds[start : start + width], (len(values), len(speeds[start : start + width]))
-        )
-        found.append(_told(designs.linearize(some, **options)))
+    for some in np.array_split(speeds, min(len(speeds), -(-len(values) * len(speeds) // _AT_ONCE))):
+        at = np.broadcast_to(some, (len(values), len(some)))
+        found.append(_told(designs.linearize(at, **options)))
         yield
     return [np.concatenate(part, axis=1) for part in zip(*found, strict=True)]
 

@@ -271,12 +271,12 @@ class _Asked(NamedTuple):
         found = find_in_flight(rotors, points, own_speeds)
         if not options.pitch_is_free:
             found.matrices["B"] = _without_pitch_equations(found.matrices["K"], found.matrices["B"])
-        for left in (found.trimmed & ~found.served, ~found.trimmed):
-            if not left.any():
+        for has_trim in (True, False):
+            rows = np.flatnonzero(~found.served & (found.trimmed == has_trim))
+            if not len(rows):
                 continue
-            rows = np.flatnonzero(left)
             own = self.at(rows) if points > len(rows) else self
-            settled = own.settled(found, rows) if found.trimmed[rows[0]] else own.trimmed(one)
+            settled = own.settled(found, rows) if has_trim else own.trimmed(one)
             matrices = _matrices(own.sections, options, settled, design, one)
             for name, matrix in matrices.items():
                 found.matrices[name][rows] = matrix

@@ -442,9 +442,7 @@ def _real_trim(balance: Balance, few: BladeSections) -> Trim:
     if not serves_in_flight(balance, few):
         return solve_trim(sections, few, balance.quantities, options, balance.target, points).trim
     found = find_in_flight(rotors_of(balance), points)
-    found.trim.converged[:] = (
-        found.trimmed
-    )  # what is to be said of these trims is found after the complex step
+    found.trim.converged[:] = found.trimmed  # their doubts are found after the complex step
     left = np.flatnonzero(~found.trimmed)
     if len(left):
         target = {"collective": balance.target.collective, "load": balance.target.load}

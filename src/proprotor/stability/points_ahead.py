@@ -53,7 +53,7 @@ class PointsAhead:
         return (self._points.at(rows[works]) if self._points is not None and works.any() else None), works
 
     def _put(self, line: Array, position: Array, solve: _Solve) -> None:
-        """_Solve points and let those that work wait, with the points that wait already."""
+        """Solve points and let those that work wait, with the points that wait already."""
         found = solve(line, position).points
         if found is None:
             return
