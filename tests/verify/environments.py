@@ -167,7 +167,8 @@ def run(
         *more,
     ]
     own = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    subprocess.run(command, cwd=ROOT, env=own | {"OPENBLAS_NUM_THREADS": "1"}, check=False)
+    more_of_own = {"OPENBLAS_NUM_THREADS": "1", "PYTEST_DEBUG_TEMPROOT": str(folder)}  # files of no other run
+    subprocess.run(command, cwd=ROOT, env=own | more_of_own, check=False)
     return result(report) if report.exists() else (0, ("no test ran",), 0)
 
 

@@ -14,6 +14,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -86,17 +87,22 @@ def selected() -> Iterator[str]:
 
 
 def tested(kernel: str, arguments: list[str]) -> bool:
-    """Run the tests under a kernel, print what they print when they are done, and return whether all passed."""
+    """Run the tests under a kernel, print what they print when they are done, and return whether all passed.
+
+    The files of the tests stand in a folder of this run alone: runs that start and end at the same time would else
+    remove the same folders of earlier runs, and the one that comes second would fail.
+    """
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *selected(), *arguments]
-    done = subprocess.run(
-        command,
-        env=environment(kernel),
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        check=False,
-    )
+    with tempfile.TemporaryDirectory() as own:
+        done = subprocess.run(
+            command,
+            env=environment(kernel) | {"PYTEST_DEBUG_TEMPROOT": own},
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
     print(f"{kernel}:\n{done.stdout}", flush=True)
     return not done.returncode
 
