@@ -26,7 +26,7 @@ from rich.console import Console
 
 import proprotor as pp
 from benchmarks.study import INPUTS, SPEEDS
-from benchmarks.study_100k import MB, modified
+from benchmarks.study_100k import MB, modified, most_of_a_worker
 from proprotor import sampling
 from proprotor.study.workers import end_workers
 
@@ -50,7 +50,8 @@ def run(designs: int, backend: str, folder: str) -> None:
         backend=backend,
     )
     analysed = time.perf_counter() - start
-    end_workers()  # their memory and processor time are told once they have ended
+    largest_worker = most_of_a_worker()
+    end_workers()  # their processor time is told once they have ended
     own, workers = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     size = sum(variable.nbytes for variable in found.variables.values()) / 1024**2
     print(
@@ -58,7 +59,7 @@ def run(designs: int, backend: str, folder: str) -> None:
         f"{workers.ru_utime + workers.ru_stime:.1f}",
         f"{size:.0f}",
         f"{own.ru_maxrss * MB:.0f}",
-        f"{workers.ru_maxrss * MB:.0f}",
+        f"{largest_worker:.0f}",
         int((found.flutter_note != "").sum()),
         bits(found),
         flush=True,

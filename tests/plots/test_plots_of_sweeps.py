@@ -262,7 +262,6 @@ def test_the_names_of_an_aircrafts_modes_have_room(of_aircraft):
     above, below = figure.axes
     for ax in (above, below):
         names = [text for text in ax.texts if text.get_text().startswith(("symmetric", "antisymmetric"))]
-        names = [text for text in names if text.get_gid() != "onset"]
         boxes = [text.get_window_extent() for text in names]
         assert len(names) >= 12 and not overlaps(boxes)
         assert max(box.x1 for box in boxes) <= figure.bbox.width

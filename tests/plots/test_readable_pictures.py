@@ -167,10 +167,10 @@ def test_options_that_are_no_defaults_are_told_in_own_and_in_given_axes(results)
 
 
 def test_nothing_stands_where_a_title_may(results):
-    """Lines leave the axes of both, and are told in small print."""
+    """Lines leave the axes of both, and are told in small print; a title takes the place of the headline."""
     for plot in (plots.plot_damping, plots.plot_root_locus):
         ax = plot(results["sweep"])
-        assert not any(ax.get_title(loc=loc) for loc in ("left", "center", "right"))
+        assert not any(ax.get_title(loc=loc) for loc in ("left", "right"))
         assert "Beyond the axis of" in small_print.read(ax)
 
 
@@ -218,6 +218,11 @@ def test_labels_of_lines_that_end_early_are_not_joined_to_them(results):
     assert len(joined) == len(SUPPORT)
 
 
+def name_of(text):
+    """The name of a line beside axes, without where its mode is unstable."""
+    return text.get_text().partition(", unstable")[0].rstrip(" ↑↓")
+
+
 @pytest.mark.parametrize("plot", [plots.plot_frequency, plots.plot_damping, plots.plot_root_locus])
 @pytest.mark.parametrize(
     ("other", "names"), [("other", ("xv15", "xv15-uncoupled")), ("options", None), ("again", None)]
@@ -232,7 +237,7 @@ def test_two_sweeps_on_one_axes_differ_in_label_dashes_and_markers(results, plot
     )
     lines = {line.get_label(): line for line in ax.lines if "," in line.get_label()}
     assert set(lines) == {f"{mode}, {name}" for mode in SUPPORT for name in names}
-    assert set(lines) <= {text.get_text().rstrip(" ↑↓") for text in ax.texts}
+    assert set(lines) <= {name_of(text) for text in ax.texts}
     for mode in SUPPORT:
         one, two = (lines[f"{mode}, {name}"] for name in names)
         assert one.get_color() == two.get_color()
@@ -289,7 +294,7 @@ def test_the_first_boundary_is_told_with_its_frequency(results):
     assert ends.min() / (2 * np.pi) - 0.006 < hertz < ends.max() / (2 * np.pi) + 0.006
     assert per_rev == pytest.approx(2 * np.pi * hertz / 48.0, abs=0.006)
     names = [text.get_text() for text in figure.axes[1].texts]
-    assert f"{first.mode} {first.start / KNOT:.0f}" in names
+    assert f"{first.mode}, unstable above {first.start / KNOT:.0f}" in names
 
 
 def test_a_map_tells_its_airspeed_and_what_is_not_known(results):

@@ -9,7 +9,7 @@ from proprotor_equations import FIXED_COORDINATES
 
 from proprotor.explore.analysis import LiveModes
 from proprotor.plots.line_of_sweep import with_gaps
-from proprotor.plots.style import COLOURS
+from proprotor.plots.style import COLOURS, mode_places
 from proprotor.rotor.motions import SECOND, is_of_loop, name_list
 
 _DASHES = ("solid", "dashed", "dotted")
@@ -29,7 +29,7 @@ def curves(found: LiveModes, rotor_speed: float, speed_unit: float) -> dict[str,
     speed_unit : float
         Unit of the axis of airspeed, in m/s.
     """
-    places = range(len(found.names))
+    places = mode_places(found.names).values()
     turns = found.eigenvalue / rotor_speed
     unstable = {one.mode for one in found.unstable}
     broad = [

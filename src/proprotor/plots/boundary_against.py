@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import cycle
 from typing import Any
 
 import numpy as np
 
-from proprotor.model.doubts import doubts_along, footnotes
-from proprotor.plots.canvas import axes_or_new, grid, note, points_per_pixel, say_origin
+from proprotor.model.doubts import doubts_along, footnotes, marked
+from proprotor.plots.canvas import axes_or_new, grid, note, points_per_pixel, say_origin, write_headline
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, axis_of, written
 from proprotor.plots.points import draw_points
-from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE, in_style
+from proprotor.plots.style import (
+    GREY,
+    LABEL_SIZE,
+    TITLE_SIZE,
+    UNSTABLE,
+    halo,
+    in_style,
+    styles_of_modes,
+)
+from proprotor.stability.kinds import RIGID_BODY
 from proprotor.tables.boundary_table import FIRST, input_of
 from proprotor.tables.points import Points, Quantity
 from proprotor.typing import Array, Axes, Dataset, Line2D
 from proprotor.units import KEAS, KNOT, SEA_LEVEL_DENSITY, airspeed_unit, speed_factor
 
-_MARKERS = "s^DvP<>h"
 _ENDS = ", stable again"
 _ROOM = 0.06  # of the axis, below and above what is drawn
 _MARGIN = 0.015  # of the axis, left and right of what is drawn
@@ -38,8 +45,9 @@ def plot_boundary_against(
 ) -> Axes:
     """Draw the airspeed of each boundary over an input.
 
-    Broad lines are boundaries at which a mode becomes unstable, thin dashed ones those at which it is stable again.
-    Above the grey line nothing is known: the search ended there, or airspeeds could not be analysed.
+    Broad lines are boundaries at which a mode becomes unstable, thin ones those at which it is stable again; hollow
+    markers are doubtful. Where a mode is unstable the ground is shaded. Above the dotted line nothing is known: the
+    search ended there, or airspeeds could not be analysed.
 
     Parameters
     ----------
@@ -79,15 +87,21 @@ def plot_boundary_against(
     if room:
         ax.set_xlim(line.values[0] - room, line.values[-1] + room)
     _set_limits(ax, speeds, top, limits)
+    _shade(ax, found, line, speeds, top)
     ax.set_xlabel(line.label)
     shown = airspeed_unit(speed_unit)
     ax.set_ylabel(f"Airspeed of the boundary, {shown}" + (", true" if shown == speed_unit else ""))
     grid(ax)
+    if not found.onset.values.all():
+        note(ax, "Thin lines: stable again above")
+    if (found.warning.values != "").any():
+        note(ax, "Hollow markers: doubtful")
     if (top <= ax.get_ylim()[1]).any():
         note(ax, "Dotted: highest airspeed that was analysed" + ("" if lines else "; no boundary below"))
     across = Quantity(path, str(found[path].attrs.get("units", "")), line.factor)
     draw_points(ax, points, across, up)
-    _name(ax, lines, found, line)
+    _name(ax, lines, found)
+    write_headline(ax, _lowest(found, line, speeds, shown))
     say_origin(ax, found.attrs, _doubts(found, line))
     return ax
 
@@ -108,20 +122,78 @@ def _airspeed_of(found: Dataset, unit: str) -> Quantity:
 
 
 def _draw(ax: Axes, found: Dataset, line: Positions, speeds: Array) -> list[Line2D]:
-    """Draw a line for each branch, in one colour for all branches of a mode; return the lines."""
+    """Draw a line for each branch, all branches of a mode as the mode looks in sweeps; return the lines."""
     lines: list[Line2D] = []
-    modes = list(dict.fromkeys(_mode_of(label) for label in found.branch.values.tolist()))
-    markers = dict(zip(modes, cycle(_MARKERS), strict=False))
+    styles = styles_of_modes(map(_mode_of, found.branch.values.tolist()))
     every = max(1, len(line.values) // 8)
     for place, label in enumerate(found.branch.values.tolist()):
-        mode, onset = _mode_of(label), bool(found.onset.values[place])
-        style: dict[str, Any] = {"color": COLOURS[modes.index(mode) % len(COLOURS)], "label": label}
-        style |= {"linestyle": "-", "linewidth": 2.2} if onset else {"linestyle": "--", "linewidth": 1.0}
-        marks: dict[str, Any] = {"marker": markers[mode] if onset else "", "markersize": 5}
+        style: dict[str, Any] = styles[_mode_of(label)]._asdict() | {"label": label, "markersize": 5}
+        if not found.onset.values[place]:
+            style |= {"linewidth": 1.0, "marker": ""}
         alone = np.isfinite(speeds[:, place]).sum() == 1
-        marks |= {"markevery": 1 if alone else (place % every, every)}
-        lines += ax.plot(line.values, speeds[:, place], **style, **marks)
+        first, step = (0, 1) if alone else (place % every, every)
+        lines += ax.plot(line.values, speeds[:, place], markevery=(first, step), **style)
+        doubtful = np.isfinite(speeds[:, place]) & (found.warning.values[:, place] != "")
+        doubtful &= np.arange(len(line.values)) % step == first
+        hollow = {"color": style["color"], "marker": style["marker"] or "o", "markerfacecolor": "white"}
+        ax.plot(line.values[doubtful], speeds[doubtful, place], linestyle="", markersize=5, **hollow)
     return lines
+
+
+def _shade(ax: Axes, found: Dataset, line: Positions, speeds: Array, top: Array) -> None:
+    """Shade the airspeeds at which a mode is unstable: from its onset to its end, or as far as was analysed."""
+    modes = np.array([_mode_of(label) for label in found.branch.values.tolist()])
+    onset = found.onset.values
+    for place in np.flatnonzero(onset):
+        ends = speeds[:, (modes == modes[place]) & ~onset]
+        later = np.where(ends > speeds[:, [place]], ends, np.inf)
+        upper = np.fmin(later.min(axis=1, initial=np.inf), top)
+        ax.fill_between(line.values, speeds[:, place], upper, color=UNSTABLE, linewidth=0, zorder=0.5)
+    lowest = _onsets(found, speeds).min(axis=1, initial=np.inf)
+    if (known := np.isfinite(lowest)).any():
+        above = np.fmin(ax.get_ylim()[1], np.nan_to_num(top, nan=np.inf)) - lowest
+        _name_side(ax, line, np.where(known, above, -np.inf), "unstable", 1)
+        _name_side(ax, line, np.where(known, lowest - ax.get_ylim()[0], -np.inf), "stable", 0)
+
+
+def _onsets(found: Dataset, speeds: Array) -> Array:
+    """Return the airspeeds (values, branches) at which flutter begins, or what else but the flight of a free aircraft.
+
+    Where there is none the airspeed is infinite.
+    """
+    counted = found.onset.values & (found.kind.values != RIGID_BODY) & np.isfinite(speeds)
+    return np.where(counted, speeds, np.inf)
+
+
+def _name_side(ax: Axes, line: Positions, room: Array, name: str, edge: int) -> None:
+    """Write the name of a side of the lowest boundary at an edge of the axes, 1 above, where the side has most room."""
+    place = int(room.argmax())
+    across = float(ax.transLimits.transform((line.values[place], 0))[0])
+    style: dict[str, Any] = {"ha": "left" if across < 0.2 else "right" if across > 0.8 else "center"}
+    style |= {"va": "top" if edge else "bottom", "style": "italic", "color": "0.3", "fontsize": TITLE_SIZE}
+    ax.annotate(
+        name,
+        (np.clip(across, 0.02, 0.98), edge),
+        xycoords="axes fraction",
+        xytext=(0, -6 if edge else 6),
+        textcoords="offset points",
+        path_effects=halo(),
+        zorder=4,
+        **style,
+    )
+
+
+def _lowest(found: Dataset, line: Positions, speeds: Array, unit: str) -> str:
+    """Return which boundary is the lowest of all values of the input, and where."""
+    onsets = _onsets(found, speeds)
+    if not np.isfinite(onsets).any():
+        return "no mode becomes unstable in the search"
+    row, place = np.unravel_index(int(onsets.argmin()), onsets.shape)
+    mode, label = str(found["mode"].values[row, place]), str(found.branch.values[place])
+    name = mode if label in (FIRST, mode) else f"{label}, there {mode},"
+    speed = marked(f"{speeds[row, place]:.0f}", found.warning.values[row, place])
+    value = f"{line.values[row]:.4g} {written(line.unit)}".rstrip()
+    return f"lowest boundary: {name} at {speed} {unit}, at {value}"
 
 
 def _mode_of(label: str) -> str:
@@ -129,42 +201,31 @@ def _mode_of(label: str) -> str:
     return label.partition(_ENDS)[0].partition(" (")[0]
 
 
-def _name(ax: Axes, lines: list[Line2D], found: Dataset, line: Positions) -> None:
-    """Write the names of lines: beside the axes where a line reaches their edge, at its last point elsewhere."""
-    last = line.values[-1]
-    at_edge = []
-    for drawn, onset, modes in zip(lines, found.onset.values, found["mode"].values.T, strict=True):
-        x, y = np.asarray(drawn.get_xydata()).T
-        known = np.flatnonzero(np.isfinite(y))
-        starts = known[np.concatenate([[True], modes[known][1:] != modes[known][:-1]])]
+def _name(ax: Axes, lines: list[Line2D], found: Dataset) -> None:
+    """Write the names of lines beside the axes; along the line of the first instability, which mode it is."""
+    for drawn, modes in zip(lines, found["mode"].values.T, strict=True):
         if drawn.get_label() == FIRST:
-            for place in starts:
+            known = np.flatnonzero(np.isfinite(np.asarray(drawn.get_ydata(), dtype=float)))
+            for place in known[np.concatenate([[True], modes[known][1:] != modes[known][:-1]])]:
                 _write(ax, drawn, int(place), str(modes[place]))
-        elif x[known[-1]] == last and onset:
-            at_edge.append(drawn)
-        else:
-            _write(ax, drawn, int(known[-1]), str(drawn.get_label()))
-    label_lines(ax, at_edge, "airspeed")
+    label_lines(ax, [one for one in lines if one.get_label() != FIRST], "airspeed")
 
 
 def _write(ax: Axes, drawn: Line2D, place: int, text: str) -> None:
-    """Write a text beside a point of a line, in its colour: above a line with markers, below one without."""
+    """Write a text above a point of a line, in its colour, to the side where the line does not rise."""
     x, y = np.asarray(drawn.get_xydata()).T
-    box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
-    style: dict[str, Any] = {"color": drawn.get_color(), "fontsize": LABEL_SIZE, "bbox": box, "zorder": 4}
+    style: dict[str, Any] = {"color": drawn.get_color(), "fontsize": LABEL_SIZE, "path_effects": halo()}
     near = y[max(0, place - 1) : place + 2]
     falls = bool(np.nanmax(near) > near[-1]) if np.isfinite(near[-1]) else bool(near[0] > y[place])
-    above = drawn.get_marker() not in ("", "None")
     left, right = np.array(ax.get_xlim()) @ [[0.85, 0.15], [0.15, 0.85]]
-    rightwards = x[place] < left or (falls == above and x[place] < right)
+    rightwards = x[place] < left or (falls and x[place] < right)
     width = (_LETTER * LABEL_SIZE * len(text) + 4) / points_per_pixel(ax) / ax.bbox.width
     at_left = float(ax.transLimits.transform((x[place], y[place]))[0])
     if not rightwards and at_left < width < 1 - at_left:
         rightwards = True
-    offset: dict[str, Any] = {"xytext": (4 if rightwards else -4, 5 if above else -5)}
-    offset |= {"ha": "left" if rightwards else "right", "va": "bottom" if above else "top"}
+    offset: dict[str, Any] = {"xytext": (4 if rightwards else -4, 5), "ha": "left" if rightwards else "right"}
     at = (float(x[place]), float(y[place]))
-    ax.annotate(text, at, textcoords="offset points", annotation_clip=True, **offset, **style)
+    ax.annotate(text, at, textcoords="offset points", annotation_clip=True, zorder=4, **offset, **style)
 
 
 def _set_limits(ax: Axes, speeds: Array, top: Array, limits: tuple[float, float] | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -15,6 +16,7 @@ from proprotor.plots.style import LABEL_SIZE, TITLE_SIZE, UNSTABLE, white_box
 from proprotor.typing import Axes, Dataset, Figure
 
 Limits = tuple[float, float]  # ends of an axis
+_HEADLINE = 80  # letters of a line above axes
 _RIGHT = 0.75  # right edge of the axes as a share of the width, if labels stand beside the axes
 
 
@@ -42,6 +44,20 @@ def two_axes(size: tuple[float, float]) -> tuple[Figure, tuple[Axes, Axes]]:
     figure.subplots_adjust(left=0.09, right=_RIGHT, top=1 - 0.2 / size[1], bottom=0.5 / size[1], hspace=0.1)
     small_print.own(figure)
     return figure, (above, below)
+
+
+def write_headline(ax: Axes, text: str) -> None:
+    """Write the one thing that a plot shows above axes of a figure that this room made, where a title may replace it.
+
+    A title that the user has set stays.
+    """
+    title = ax.title
+    if not small_print.is_own(ax.get_figure(root=True)) or title.get_text() not in ("", title.get_label()):
+        return
+    lines = "\n".join(textwrap.wrap(text, _HEADLINE))
+    style: dict[str, Any] = {"fontsize": LABEL_SIZE + 1, "fontweight": "bold", "parse_math": False}
+    ax.set_title(lines, loc="center", **style)
+    title.set_label(lines)
 
 
 def write_title(figure: Figure, title: str, second: str = "") -> None:

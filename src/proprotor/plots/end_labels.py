@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -24,14 +24,21 @@ _LEAST = 0.3  # of the width of a figure: axes do not become narrower for the sa
 _labels: WeakKeyDictionary[Axes, list[Any]] = WeakKeyDictionary()  # what stands beside axes
 
 
-def label_lines(ax: Axes, lines: Sequence[Line2D], quantity: str, *, tie: bool = True) -> None:
+def label_lines(
+    ax: Axes,
+    lines: Sequence[Line2D],
+    quantity: str,
+    *,
+    tie: bool = True,
+    more: Mapping[Line2D, str] | None = None,
+) -> None:
     """Write the name of each line to the right of the axes, in place of names that stand there already.
 
     Call this function when the limits of the axes are set, with all lines that are to have names. The names of thin
     lines are grey. An arrow follows the name of a line whose end lies beyond the axes. With `tie` a thin line joins
     each name to its line, if the line ends at the right edge of the axes: nothing is drawn where nothing is known.
     Without `tie` names only stand in the order of the ends. Small print names the lines of which no point lies within
-    the axis of the `quantity`.
+    the axis of the `quantity`. What `more` has of a line is written after its name.
     """
     for old in _labels.pop(ax, []):
         old.remove()
@@ -45,7 +52,7 @@ def label_lines(ax: Axes, lines: Sequence[Line2D], quantity: str, *, tie: bool =
         beyond = " ↑" if y > 1 else " ↓" if y < 0 else ""
         style: dict[str, Any] = {} if line.get_linewidth() >= _BROAD else {"color": GREY}
         style |= {"fontsize": LABEL_SIZE, "va": "center", "parse_math": False, "clip_on": False}
-        name = f"{line.get_label()}{beyond}"
+        name = ", ".join(filter(None, (str(line.get_label()), (more or {}).get(line)))) + beyond
         written.append(ax.text(_START, height, name, transform=ax.transAxes, **style))
     _make_room(ax, [artist for artist in written if hasattr(artist, "get_text")])
     outside = [str(line.get_label()) for line in lines if line not in ends]

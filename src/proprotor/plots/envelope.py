@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from proprotor.errors import InputError
-from proprotor.model.doubts import reasons_for_doubt
-from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
+from proprotor.model.doubts import marked, reasons_for_doubt
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, write_headline
 from proprotor.plots.style import COLOURS, GREY, in_style
+from proprotor.stability.envelope_dataset import with_worst
 from proprotor.typing import Array, Axes, Dataset
 from proprotor.units import KEAS, KNOT, factor_to_si
 
@@ -55,8 +56,12 @@ def plot_envelope(found: Dataset, ax: Axes | None = None, *, unit: str = "ft") -
     shown = _draw_needed(ax, found, found.height.values / factor)
     lowest = _lowest(found)
     none = []
-    styles = zip(found.condition.values.tolist(), cycle(_MARKERS), cycle(_DASHES), strict=False)
+    names = found.condition.values.tolist()
+    styles = zip(names, cycle(_MARKERS), cycle(_DASHES), strict=False)
     for place, (name, marker, dashes) in enumerate(styles):
+        under = 1 - place / max(
+            len(names) - 1, 1
+        )  # a line that others cover is broader, so that its edges are seen
         speed, doubtful = (part[place] for part in lowest)
         if not np.isfinite(speed).any():
             none.append(name)
@@ -67,14 +72,17 @@ def plot_envelope(found: Dataset, ax: Axes | None = None, *, unit: str = "ft") -
             altitude,
             color=colour,
             linestyle=dashes,
-            linewidth=1.8,
+            linewidth=1.4 + 2.6 * under,
             marker=marker,
-            markersize=6,
+            markersize=5.5 + 3.5 * under,
             label=name,
         )
-        ax.plot(
-            speed[doubtful], altitude[doubtful], marker, color=colour, markerfacecolor="white", markersize=6
-        )
+        hollow: dict[str, Any] = {
+            "color": colour,
+            "markerfacecolor": "white",
+            "markersize": 5.5 + 3.5 * under,
+        }
+        ax.plot(speed[doubtful], altitude[doubtful], marker, **hollow)
         shown = np.append(shown, speed[np.isfinite(speed)])
     _set_limits(ax, shown, altitude)
     ax.set_xlabel(f"Equivalent airspeed, {KEAS}")
@@ -84,8 +92,29 @@ def plot_envelope(found: Dataset, ax: Axes | None = None, *, unit: str = "ft") -
         note(ax, f"No onset in the search: {'; '.join(none)}")
     ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
     doubts = reasons_for_doubt(found.warning.values.ravel().tolist())
+    write_headline(ax, _worst(found, factor, unit))
     say_origin(ax, found.attrs, [f"Doubtful where markers are hollow: {text}." for text in doubts])
     return ax
+
+
+def _worst(found: Dataset, factor: float, unit: str) -> str:
+    """Return the verdict of the worst case, its margin to the speed required, and which mode has its onset where."""
+    place = with_worst(found).attrs["worst_place"]  # of what is drawn, which may be a part of what was found
+    here = found.isel(dict(zip(found.verdict.dims, place, strict=True)))
+    where = f"{here.condition.item()}, {float(here.altitude) / factor:,.0f} {unit}"
+    margin, verdict = float(here.margin), str(here.verdict.item())
+    if not np.isfinite([margin, float(here.equivalent_onset)]).all():
+        return (
+            f"{verdict}: {here.why.item()} ({where})"
+            if here.why.item()
+            else f"{verdict}: no onset in the search"
+        )
+    onset = marked(f"{float(here.equivalent_onset) / KNOT:.0f}", here.warning.item())
+    return f"{verdict}, least margin {_signed(100 * margin)} %: {here['mode'].item()} at {onset} {KEAS} ({where})"
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.0f}".replace("-", "−")
 
 
 def _draw_needed(ax: Axes, found: Dataset, height: Array) -> Array:
@@ -122,5 +151,5 @@ def _set_limits(ax: Axes, shown: Array, altitude: Array) -> None:
     low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
     room = max(_ROOM * (high - low), 0.02 * high)
     ax.set_xlim(max(0.0, low - 3 * room), high + room)
-    edge = 0.03 * (altitude[-1] - altitude[0])
+    edge = 0.03 * (altitude[-1] - altitude[0]) or 1.0  # of a single altitude
     ax.set_ylim(altitude[0] - edge, altitude[-1] + edge)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,11 +20,11 @@ from proprotor.plots.canvas import (
     write_title,
 )
 from proprotor.plots.end_labels import label_lines
-from proprotor.plots.line_of_sweep import Positions, positions, written
-from proprotor.plots.mode_lines import draw_modes, earlier_sweeps, names_of_sweeps
-from proprotor.plots.onsets import boundaries_of
+from proprotor.plots.line_of_sweep import Positions, positions
+from proprotor.plots.mode_lines import draw_modes, earlier_sweeps, unstable_lines, write_headline_of_sweeps
+from proprotor.plots.onsets import boundaries_of, fixed_airspeed, told_by
 from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
-from proprotor.plots.style import SMALL_SIZE, UNSTABLE, in_style, white_box
+from proprotor.plots.style import RING, UNSTABLE, in_style
 from proprotor.tables.points import DAMPING, Points, Quantity
 from proprotor.tables.sweep_summary import damped_frequency, damping_percent, leaps
 from proprotor.typing import Array, Axes, Dataset, Figure
@@ -33,9 +33,6 @@ _DAMPING = (-5.0, 20.0)  # usual ends of the axis of damping, percent of critica
 _PER_REV = (0.0, 5.0)  # usual ends of the axis of frequency
 _FILLED = 0.45  # of the usual axis: where all lines are lower, half the axis shows them larger
 _PERCENT = Quantity(DAMPING, "", 0.01)
-_ONSET = "onset"  # gid of the name of a mode beside its boundary
-_ROWS = 6  # of names of modes below the line of zero damping
-_NEAR = 0.25  # of the width of the axes: so near the left edge a name stands to the right
 
 
 @in_style
@@ -49,7 +46,7 @@ def plot_frequency(
     points: Points | None = None,
     name: str = "",
 ) -> Axes:
-    """Draw the frequency |Im s| of each mode along a sweep, with a circle where a mode becomes unstable.
+    """Draw the frequency |Im s| of each mode along a sweep, with a circle at each boundary.
 
     Parameters
     ----------
@@ -83,6 +80,7 @@ def plot_frequency(
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
     _draw_frequency(ax, sweep, line, _Asked(rotor_speed, limits, points, name))
+    write_headline_of_sweeps(ax)
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
@@ -92,8 +90,8 @@ def _draw_frequency(ax: Axes, sweep: Dataset, line: Positions, of: _Asked) -> No
     values = damped_frequency(sweep) / per
     usual = (0, None) if of.rotor_speed is None else _PER_REV
     _draw(ax, sweep, values, line, usual, of, frequency_quantity(line, of.rotor_speed), "frequency")
-    onsets = [one for one in boundaries_of(sweep, values) if one.onset]
-    _draw_circles(ax, [one.place / line.factor for one in onsets], [one.value for one in onsets])
+    found = boundaries_of(sweep, values)
+    ax.plot([one.place / line.factor for one in found], [one.value for one in found], "o", **RING)
     ax.set_ylabel(f"Frequency |Im s| ({'Hz' if of.rotor_speed is None else 'per rev'})")
 
 
@@ -109,8 +107,8 @@ def plot_damping(
 ) -> Axes:
     """Draw the damping ratio -Re s/|s| of each mode along a sweep, in percent of critical.
 
-    Damping is negative where a mode is unstable. Circles are boundaries, interpolated between points of the sweep; of
-    those where a mode becomes unstable the mode and the airspeed are written.
+    Damping is negative where a mode is unstable. Circles are boundaries, interpolated between points of the sweep; the
+    names beside the axes tell where their modes are unstable.
 
     Parameters
     ----------
@@ -141,6 +139,7 @@ def plot_damping(
     line = positions(sweep, unit)
     ax = axes_or_new(ax, labels_beside=True)
     _draw_damping(ax, sweep, line, _Asked(None, limits, points, name))
+    write_headline_of_sweeps(ax)
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
@@ -187,7 +186,7 @@ def plot_sweep(
     line = positions(sweep, unit)
     if points is not None:
         points.check(_across(sweep, line), [frequency_quantity(line, rotor_speed), _PERCENT])
-    write_title(figure, title, _first_onset(sweep, line, rotor_speed))
+    write_title(figure, title, told_by(sweep, line, rotor_speed).headline)
     _draw_frequency(above, sweep, line, _Asked(rotor_speed, None, points, needed=False))
     _draw_damping(below, sweep, line, _Asked(None, damping_limits, points, needed=False))
     above.set_xlabel("")
@@ -231,11 +230,13 @@ def _draw(
 
     The axis has the limits that were asked for, or the usual ones.
     """
-    lines = draw_modes(ax, sweep, values, line, of.name)
+    lines = draw_modes(ax, sweep, values, line, of.name, of.rotor_speed)
     ax.margins(x=0)
     ax.set_ylim(*(of.limits or (usual[0], _top(ax, usual[1]))))
     draw_points(ax, of.points, _across(sweep, line), up, needed=of.needed)
-    label_lines(ax, lines, quantity)
+    label_lines(ax, lines, quantity, more=unstable_lines(ax))
+    if fixed := fixed_airspeed(sweep):
+        note(ax, f"Everything{fixed.removeprefix(',')}")
 
 
 def _top(ax: Axes, usual: float | None) -> float | None:
@@ -245,55 +246,13 @@ def _top(ax: Axes, usual: float | None) -> float | None:
     return usual / 2 if usual and highest < _FILLED * usual else usual
 
 
-def _first_onset(sweep: Dataset, line: Positions, rotor_speed: ArrayLike | None) -> str:
-    """Return which mode becomes unstable first along the line, where and at which frequency; empty without any."""
-    onsets = [one for one in boundaries_of(sweep, damped_frequency(sweep)) if one.onset]
-    if not onsets:
-        return ""
-    first = min(onsets, key=lambda one: one.place)
-    omega = None if rotor_speed is None else np.asarray(rotor_speed, dtype=float)
-    turns = f", {first.value / omega:.2f} per rev" if omega is not None and omega.ndim == 0 else ""
-    at = f"{_rounded(first.place / line.factor)} {written(line.unit)}"
-    return f"{first.mode} becomes unstable at {at}: {first.value / (2 * np.pi):.2f} Hz{turns}"
-
-
 def _mark_instability(ax: Axes, sweep: Dataset, line: Positions) -> None:
-    """Shade negative damping, draw a circle at each boundary, and name the modes that become unstable there."""
+    """Shade negative damping and draw a circle at each boundary."""
     ax.axhspan(min(ax.get_ylim()[0], 0), 0, color=UNSTABLE, linewidth=0, zorder=0.5)
     ax.axhline(0, color="black", linewidth=0.8)
     found = boundaries_of(sweep, damping_percent(sweep))
-    _draw_circles(ax, [one.place / line.factor for one in found], [0.0] * len(found))
-    _name_onsets(ax, [one for one in found if one.onset], line)
+    ax.plot([one.place / line.factor for one in found], [0.0] * len(found), "o", **RING)
     if found:
-        note(ax, "Circles: boundaries, interpolated between points of the sweep")
+        note(ax, "Circles, and numbers after names: boundaries, interpolated between points of the sweep")
     if not any(text.get_text() == "unstable" for text in ax.texts):
         name_unstable(ax)
-
-
-def _name_onsets(ax: Axes, onsets: list[Any], line: Positions) -> None:
-    """Write below the line of zero damping which mode becomes unstable where, a row for each mode."""
-    names = names_of_sweeps(ax)
-    earlier = [text for text in ax.texts if text.get_gid() == _ONSET]
-    for text in earlier if len(names) == 2 else ():  # stood there without the name of their sweep
-        mode, _, at = text.get_text().rpartition(" ")
-        text.set_text(f"{mode}, {names[0]} {at}")
-    low, high = ax.get_xlim()
-    shown = sorted(onsets, key=lambda one: one.place)[: max(0, _ROWS - len(earlier))]
-    for row, one in enumerate(shown, len(earlier)):
-        at = one.place / line.factor
-        right = at < low + _NEAR * (high - low)
-        style: dict[str, Any] = {"textcoords": "offset points", "va": "top", "fontsize": SMALL_SIZE}
-        style |= {"bbox": white_box(0.8) | {"alpha": 0.8}, "annotation_clip": True, "zorder": 4}
-        style |= {"xytext": (5 if right else -5, -4 - 10 * row), "ha": "left" if right else "right"}
-        style |= {"parse_math": False, "gid": _ONSET}
-        ax.annotate(f"{', '.join(filter(None, (one.mode, names[-1])))} {_rounded(at)}", (at, 0), **style)
-
-
-def _rounded(value: float) -> str:
-    """Return a number that was interpolated: whole from 100 on, three digits below."""
-    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
-
-
-def _draw_circles(ax: Axes, x: list[float], y: list[float]) -> None:
-    style: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": "black", "zorder": 5}
-    ax.plot(x, y, "o", **style)

@@ -6,10 +6,13 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from proprotor.model import stamp
-from proprotor.plots.canvas import grid, note
+from proprotor.plots import small_print
+from proprotor.plots.canvas import grid, note, write_headline
 from proprotor.plots.line_of_sweep import Positions, with_gaps
+from proprotor.plots.onsets import Told, told_by
 from proprotor.plots.style import LABEL_SIZE, UNKNOWN, ModeStyle, mode_styles, of_later_sweep, white_box
 from proprotor.tables.sweep_summary import broad_modes, leaps, modes_of_interest
 from proprotor.typing import Array, Axes, Dataset, Line2D
@@ -19,17 +22,25 @@ _NAMED = 0.03  # of the width of the axes: a failed stretch that is broader has 
 
 
 class _Drawn(NamedTuple):
-    """A sweep on axes: its stamp, its name where the axes hold several, and the lines of its modes."""
+    """A sweep on axes: its stamp, its name where the axes hold several, the lines of its modes, and what it tells."""
 
     stamp: dict[str, str]
     name: str
     lines: dict[str, Line2D]
+    told: Told
 
 
 _sweeps: WeakKeyDictionary[Axes, list[_Drawn]] = WeakKeyDictionary()
 
 
-def draw_modes(ax: Axes, sweep: Dataset, values: Array, line: Positions, name: str = "") -> list[Line2D]:
+def draw_modes(
+    ax: Axes,
+    sweep: Dataset,
+    values: Array,
+    line: Positions,
+    name: str = "",
+    rotor_speed: ArrayLike | None = None,
+) -> list[Line2D]:
     """Draw a line for each mode through values (points, modes); return the lines on the axes that are to have names.
 
     Of more modes than have room for their names, only modes of the support and unstable modes have lines. Points of the
@@ -37,6 +48,7 @@ def draw_modes(ax: Axes, sweep: Dataset, values: Array, line: Positions, name: s
     further sweep on the same axes have the colours of the first, other dashes and hollow markers, and the `name` of
     their sweep in their labels.
     """
+    told = told_by(sweep, line, rotor_speed)
     shown = modes_drawn(ax, sweep)
     sweep, values = sweep.isel(mode=shown), values[:, shown]
     earlier = earlier_sweeps(ax)
@@ -49,7 +61,7 @@ def draw_modes(ax: Axes, sweep: Dataset, values: Array, line: Positions, name: s
         (lines[mode],) = ax.plot(x, y, label=mode, **markers, **style._asdict())
     mark_failed(ax, line, sweep.reason.values != "", first=not earlier)
     grid(ax)
-    return named(ax, sweep, lines, name)
+    return named(ax, sweep, lines, name, told)
 
 
 def earlier_sweeps(ax: Axes) -> list[_Drawn]:
@@ -71,21 +83,26 @@ def styles_beside(earlier: list[_Drawn], sweep: Dataset) -> list[tuple[str, Mode
     ]
 
 
-def named(ax: Axes, sweep: Dataset, lines: dict[str, Line2D], name: str) -> list[Line2D]:
+def named(ax: Axes, sweep: Dataset, lines: dict[str, Line2D], name: str, told: Told) -> list[Line2D]:
     """Keep the lines of a sweep; return the lines on the axes that are to have names.
 
     The labels of several sweeps end in what tells the sweeps apart. Where all names have no room, those of broad lines
     alone are returned.
     """
     kept = _sweeps.setdefault(ax, [])
-    kept.append(_Drawn(stamp.of(sweep.attrs), name, lines))
+    kept.append(_Drawn(stamp.of(sweep.attrs), name, lines, told))
     every = [line for one in kept for line in one.lines.values()]
     if len(kept) == 1:
         return every
     for one, own in zip(kept, _names(kept), strict=True):
         for mode, line in one.lines.items():
             line.set_label(f"{mode}, {own}")
-        if own not in (of := stamp.line(one.stamp)):
+        if own in (of := stamp.line(one.stamp)):
+            continue
+        if f"“{own}”: {of}" not in small_print.read(ax):
+            small_print.replace(
+                ax, of, ""
+            )  # it stands there for the whole plot, which holds another sweep now
             note(ax, f"“{own}”: {of}")
     if len(every) <= _MOST:
         return every
@@ -94,10 +111,23 @@ def named(ax: Axes, sweep: Dataset, lines: dict[str, Line2D], name: str) -> list
     return broad
 
 
-def names_of_sweeps(ax: Axes) -> list[str]:
-    """Return the names of the sweeps on axes, where the axes hold several; an empty one for a sweep alone."""
+def unstable_lines(ax: Axes) -> dict[Line2D, str]:
+    """Return, of the lines of all sweeps on axes, where their modes are unstable, in words."""
+    return {
+        line: one.told.unstable.get(mode, "")
+        for one in _sweeps.get(ax, [])
+        for mode, line in one.lines.items()
+    }
+
+
+def write_headline_of_sweeps(ax: Axes) -> None:
+    """Write above axes what their sweep tells, or in few words what each of several sweeps tells."""
     kept = _sweeps.get(ax, [])
-    return _names(kept) if len(kept) > 1 else [""]
+    if len(kept) == 1:
+        write_headline(ax, kept[0].told.headline)
+    else:
+        each = zip(_names(kept), kept, strict=True)
+        write_headline(ax, "; ".join(f"{name}: {one.told.short}" for name, one in each))
 
 
 def _broad_lines(kept: list[_Drawn]) -> list[Line2D]:

@@ -9,9 +9,17 @@ import numpy as np
 from proprotor.plots.canvas import Limits, along, axes_or_new, grid, note, points_per_pixel, say_origin
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
-from proprotor.plots.mode_lines import earlier_sweeps, modes_drawn, named, styles_beside
+from proprotor.plots.mode_lines import (
+    earlier_sweeps,
+    modes_drawn,
+    named,
+    styles_beside,
+    unstable_lines,
+    write_headline_of_sweeps,
+)
+from proprotor.plots.onsets import boundaries_of, told_by
 from proprotor.plots.points import draw_points
-from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, UNSTABLE, in_style, white_box
+from proprotor.plots.style import LABEL_SIZE, RING, SMALL_SIZE, UNSTABLE, in_style, white_box
 from proprotor.tables.points import FREQUENCY, GROWTH, Points, Quantity
 from proprotor.tables.sweep_summary import broad_modes, growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
@@ -39,8 +47,8 @@ def plot_root_locus(
 ) -> Axes:
     """Draw how the roots s move in the upper half of their plane: Re s across, |Im s| up.
 
-    Markers stand at round values of the airspeed or input, and grow with the value. Rays are lines of equal damping
-    ratio.
+    Markers stand at round values of the airspeed or input, and grow with the value. Circles are boundaries.
+    Rays are lines of equal damping ratio.
 
     Parameters
     ----------
@@ -74,13 +82,14 @@ def plot_root_locus(
     """
     line = positions(sweep, unit)
     ax = axes_or_new(ax, size=(8, 7), labels_beside=True)
+    told = told_by(sweep, line, rotor_speed)
     sweep = sweep.isel(mode=modes_drawn(ax, sweep))
     per = 1.0 if rotor_speed is None else float(rotor_speed)
     real, imaginary = growth_rate(sweep) / per, np.abs(sweep.eigenvalue.values.imag) / per
     imaginary = np.where(np.isnan(real), np.nan, imaginary)
     _set_limits(ax, sweep, real, imaginary, growth_limits, frequency_limits)
     at = _round_values(line, marks)
-    lines = _draw(ax, sweep, real, imaginary, line, at, name)
+    lines = named(ax, sweep, _draw(ax, sweep, real, imaginary, line, at), name, told)
     up = Quantity(FREQUENCY, "rad/s", per, {} if rotor_speed is None else {"per rev": per})
     growth = Quantity(GROWTH, "1/s", per, up.special)
     draw_points(ax, points, growth, up)
@@ -94,7 +103,12 @@ def plot_root_locus(
     if len(at) > 1:
         ends = f"from {at[0]:g} to {at[-1]:g} {written(line.unit)}"
         note(ax, f"Markers every {at[1] - at[0]:g}, growing {ends}")
-    label_lines(ax, lines, "growth or frequency", tie=False)
+    crossings = [one.value for one in boundaries_of(sweep, imaginary)]
+    ax.plot(np.zeros(len(crossings)), crossings, "o", **RING)
+    if crossings:
+        note(ax, "Circles, and numbers after names: boundaries, interpolated between points of the sweep")
+    label_lines(ax, lines, "growth or frequency", tie=False, more=unstable_lines(ax))
+    write_headline_of_sweeps(ax)
     say_origin(ax, sweep.attrs, along(sweep, line))
     return ax
 
@@ -142,9 +156,9 @@ def _round_values(line: Positions, step: float | None) -> Array:
 
 
 def _draw(
-    ax: Axes, sweep: Dataset, real: Array, imaginary: Array, line: Positions, at: Array, name: str
-) -> list[Line2D]:
-    """Draw a line for each mode with markers at round values; return the lines that are to have names."""
+    ax: Axes, sweep: Dataset, real: Array, imaginary: Array, line: Positions, at: Array
+) -> dict[str, Line2D]:
+    """Draw a line for each mode with markers at round values; return the lines."""
     lines: dict[str, Line2D] = {}
     earlier = earlier_sweeps(ax)
     sizes = np.linspace(_LARGEST, _SMALLEST, len(at))[::-1] ** 2  # a single marker is large
@@ -161,7 +175,7 @@ def _draw(
         ax.scatter(x, y, s=sizes, **more)
         if mode in broad:
             _write_ends(ax, x, y, at)
-    return named(ax, sweep, lines, name)
+    return lines
 
 
 def _write_ends(ax: Axes, x: Array, y: Array, at: Array) -> None:

@@ -40,11 +40,15 @@ def add(ax: Axes, *sentences: str, first: bool = False) -> None:
     new = printable(" ".join(sentence for sentence in sentences if sentence and sentence not in read(ax)))
     if figure is None or not new:
         return
-    text = " ".join(filter(None, (new, read(ax)) if first else (read(ax), new)))
-    if is_own(figure):
-        _write_at_bottom(figure, text)
-    else:
-        _write_below(ax, figure, text)
+    _write(ax, figure, " ".join(filter(None, (new, read(ax)) if first else (read(ax), new))))
+
+
+def replace(ax: Axes, old: str, new: str) -> None:
+    """Replace a sentence of the block of the axes."""
+    text = read(ax)
+    figure = ax.get_figure(root=True)
+    if figure is not None and old in text:
+        _write(ax, figure, " ".join(text.replace(old, new).split()))
 
 
 def read(ax: Axes) -> str:
@@ -52,6 +56,14 @@ def read(ax: Axes) -> str:
     figure = ax.get_figure(root=True)
     texts = figure.texts if figure is not None and is_own(figure) else ax.texts
     return next((str(text.get_label()) for text in texts if text.get_gid() == _BLOCK), "")
+
+
+def _write(ax: Axes, figure: Figure, text: str) -> None:
+    """Write the whole text of the block of the axes."""
+    if is_own(figure):
+        _write_at_bottom(figure, text)
+    else:
+        _write_below(ax, figure, text)
 
 
 def _lines(text: str, letters: int) -> list[str]:

@@ -13,13 +13,15 @@ from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
 from proprotor.plots.line_of_sweep import Positions, axis_of
 from proprotor.plots.points import draw_points, quantity_of
 from proprotor.plots.style import (
-    COLOURS,
+    GREY,
     LABEL_SIZE,
     STABLE,
     TITLE_SIZE,
     UNKNOWN,
     UNSTABLE,
+    halo,
     in_style,
+    styles_of_modes,
     white_box,
 )
 from proprotor.stability.boundary_lines import BoundaryLine
@@ -27,7 +29,6 @@ from proprotor.tables.points import Points, Quantity
 from proprotor.typing import Array, Axes, Dataset
 from proprotor.units import KNOT, KTAS
 
-_DASHES = ("-", "--", "-.", ":")
 _Point = tuple[float, float]
 _Edge = tuple[int, int, int]  # row, column, and 0 for an edge along x or 1 for an edge along y
 _BORDER = 0.15  # of the axes: a name so near their edge is written away from the edge
@@ -88,6 +89,7 @@ def plot_stability_map(
         draw_points(ax, points, _quantity(found, x), _quantity(found, y))
     _draw_named(ax, lines, x, y)
     _name_regions(ax, x.values, y.values, growth)
+    _mark_deck(ax, found, x, y)
     if "airspeed" in found.attrs:
         note(ax, f"Everywhere at {float(found.attrs['airspeed']) / KNOT:.4g} {KTAS}")
     if level := float(found.attrs.get("level", 0.0)):
@@ -178,9 +180,8 @@ def _stable_part(
 
 def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positions) -> None:
     """Draw the lines of each mode in one style, with the name of the mode beside its longest line."""
-    for place, mode in enumerate(dict.fromkeys(line.mode for line in lines)):
+    for mode, (colour, dashes, *_) in styles_of_modes(line.mode for line in lines).items():
         own = [line for line in lines if line.mode == mode]
-        colour, dashes = COLOURS[place % len(COLOURS)], _DASHES[place % len(_DASHES)]
         style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 2.0, "zorder": 3}
         for line in own:
             label = mode if line is own[0] else f"_{mode}"  # one label for all lines of a mode
@@ -195,6 +196,25 @@ def _draw_named(ax: Axes, lines: Sequence[BoundaryLine], x: Positions, y: Positi
         if min(across, 1 - across) < _BORDER:  # a name in the middle would leave the axes
             text |= {"ha": "left" if across < 0.5 else "right"}
         ax.annotate(mode, at, xytext=offset, textcoords="offset points", annotation_clip=True, **text)
+
+
+def _mark_deck(ax: Axes, found: Dataset, x: Positions, y: Positions) -> None:
+    """Mark the deck's own values: a point, or a line where the other axis is the airspeed, of which a deck has none."""
+    own = [float(found[axis.name].attrs.get("of_deck", np.nan)) / axis.factor for axis in (x, y)]
+    within = [
+        low <= value <= high for value, (low, high) in zip(own, (ax.get_xlim(), ax.get_ylim()), strict=True)
+    ]
+    text: dict[str, Any] = {"fontsize": LABEL_SIZE, "path_effects": halo(), "zorder": 5}
+    text |= {"textcoords": "offset points", "xytext": (6, 4)}
+    if all(within):
+        ax.plot(*own, "*", color="black", markeredgecolor="white", markersize=11, zorder=5)
+        ax.annotate("the deck", (own[0], own[1]), **text)
+    elif within[1] and np.isnan(own[0]):
+        ax.axhline(own[1], color=GREY, linewidth=0.9, linestyle=":", zorder=2)
+        ax.annotate("the deck", (0, own[1]), xycoords=ax.get_yaxis_transform(), **text)
+    elif within[0] and np.isnan(own[1]):
+        ax.axvline(own[0], color=GREY, linewidth=0.9, linestyle=":", zorder=2)
+        ax.annotate("the deck", (own[0], 0), xycoords=ax.get_xaxis_transform(), **text)
 
 
 def _steps(line: BoundaryLine, x: Positions, y: Positions) -> Array:

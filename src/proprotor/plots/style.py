@@ -5,9 +5,10 @@ Colours, dashes and markers differ for colour-blind readers and on grey prints.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from functools import wraps
-from itertools import cycle
+from itertools import count
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from proprotor.tables.sweep_summary import broad_modes
@@ -20,6 +21,7 @@ DRIVES, DAMPS = "#E69F00", "#0072B2"
 STABLE = "#C4E3D8"  # a green that prints as a light grey
 UNSTABLE = "#FBE9DF"  # prints as almost white
 UNKNOWN: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "0.6", "hatch": "////", "linewidth": 0}
+RING: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": "black", "zorder": 5}  # of a boundary
 GREY = "0.35"
 TITLE_SIZE, LABEL_SIZE, SMALL_SIZE = 11, 8, 7  # points: titles, names within plots and legends, small print
 # Settings of Matplotlib for axes, their texts and legends; a user's own settings go before these.
@@ -46,12 +48,43 @@ _LATER = {  # dashes of the same line of a further sweep on the same axes
     ":": (0, (1, 3)),
     "-.": (0, (8, 2, 1, 2, 1, 2)),
 }
-_MARKERS = "s^DvP<>"  # on broad lines, because their colours alone do not differ on a grey print
+_MARKERS = "s^DvP<>Xp8dhH*"  # on broad lines, because their colours alone do not differ on a grey print
+# Places of motions in the turns of colours and dashes: in every picture of every case a motion looks the same.
+_PLACES = {
+    motion: place
+    for place, motion in enumerate(
+        (
+            *("beam", "chord", "torsion", "coning", "regressive flap", "progressive flap", "collective lag"),
+            *(
+                "regressive lag",
+                "progressive lag",
+                "collective pitch",
+                "regressive pitch",
+                "progressive pitch",
+            ),
+            *("rotor speed", "regressive gimbal", "progressive gimbal"),
+        )
+    )
+} | {
+    # Of aircraft, whose modes of the support are drawn, and of the rotor those alone that become unstable.
+    **{
+        "pylon yaw": 5,
+        "pylon pitch": 4,
+        "axial": 4,
+        "heave": 3,
+        "surge": 10,
+        "pitch": 6,
+        "sway": 11,
+        "roll": 12,
+    },
+    **{"yaw": 13, "beam_2": 7, "chord_2": 8, "torsion_2": 9},
+}
 
 # Hatches of bars by the status of a number; the bar of a number that was read in a source has no hatch.
 STATUS_HATCHES = {"recalled": "////", "assumed": "xxxx", "calibrated": "...."}
 
 
+_NUMBERED = re.compile(r"mode ([1-9]\d?)")
 _Given = ParamSpec("_Given")
 _Drawn = TypeVar("_Drawn")
 
@@ -72,6 +105,13 @@ def in_style(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
     return drawn
 
 
+def halo() -> list[Any]:
+    """Return the effects of a text over lines: a thin white edge around letters, which hides little of the lines."""
+    from matplotlib import patheffects  # here, because matplotlib takes long to import
+
+    return [patheffects.withStroke(linewidth=2, foreground="white")]
+
+
 def white_box(pad: float) -> dict[str, Any]:
     """Return the box of a text that stands over lines; `pad` is the room around the text, points."""
     return {"facecolor": "white", "edgecolor": "none", "pad": pad}
@@ -90,23 +130,54 @@ def mode_styles(sweep: Dataset) -> list[ModeStyle]:
     """Return a style for each mode of a sweep, in the order of the modes.
 
     No two of as many modes as a plot draws share both colour and dashes. The same mode looks the same in every plot of
-    a sweep. Modes of the support and unstable modes have broad lines with markers. Of an aircraft the symmetric and the
-    antisymmetric mode of one motion share their colour; the antisymmetric one is broken.
+    every case, as far as the other modes leave its style free. Modes of the support and unstable modes have broad lines
+    with markers. Of an aircraft the symmetric and the antisymmetric mode of one motion share their colour; the
+    antisymmetric one is broken.
     """
     broad = broad_modes(sweep)
     modes = sweep.mode.values.tolist()
-    motions = list(dict.fromkeys(map(_motion, modes)))
-    markers = dict(zip([motion for motion in motions if motion in set(map(_motion, broad))], cycle(_MARKERS)))
+    styles = styles_of_modes([*filter(broad.__contains__, modes), *modes])
     single = "o" if len(sweep.reason) == 1 else ""
     return [
-        ModeStyle(
-            color=COLOURS[motions.index(_motion(mode)) % len(COLOURS)],
-            linestyle=_dashes(mode, motions.index(_motion(mode)) // len(COLOURS)),
-            linewidth=2.4 if mode in broad else 1.2,
-            marker=markers[_motion(mode)] if mode in broad else single,
-        )
+        styles[mode] if mode in broad else styles[mode]._replace(linewidth=1.2, marker=single)
         for mode in modes
     ]
+
+
+def styles_of_modes(modes: Iterable[str]) -> dict[str, ModeStyle]:
+    """Return the style of a broad line of each mode, which is the same in every picture of every case.
+
+    Where two motions have one place, the first of them has it, and the other one the next that is free.
+    """
+    places = mode_places(modes)
+    return {
+        mode: ModeStyle(
+            color=COLOURS[place % len(COLOURS)],
+            linestyle=_dashes(mode, place // len(COLOURS)),
+            linewidth=2.4,
+            marker=_MARKERS[place % len(_MARKERS)],
+        )
+        for mode, place in places.items()
+    }
+
+
+def mode_places(modes: Iterable[str]) -> dict[str, int]:
+    """Return the place of each mode in the turns of colours and dashes: its motion's own, or the next that is free."""
+    modes = list(dict.fromkeys(modes))
+    taken: dict[str, int] = {}
+    motions = dict.fromkeys(map(_motion, modes))
+    for motion in sorted(
+        motions, key=lambda motion: _usual_place(motion) is None
+    ):  # those without a place come last
+        free = (place for place in count(_usual_place(motion) or 0) if place not in taken.values())
+        taken[motion] = next(free)
+    return {mode: taken[_motion(mode)] for mode in modes}
+
+
+def _usual_place(motion: str) -> int | None:
+    """Return the place of a motion that has one: those of the list, and modes that a support numbers."""
+    number = _NUMBERED.fullmatch(motion)
+    return int(number[1]) - 1 if number else _PLACES.get(motion)
 
 
 def line_style(place: int) -> dict[str, Any]:

@@ -63,7 +63,7 @@ from proprotor.stability.branches import BranchLabels, NamedStates, branch_label
 from proprotor.stability.crossings import Search
 from proprotor.stability.eigenvalue_derivatives import eigenvalue_change, with_changes
 from proprotor.stability.envelope import envelope
-from proprotor.stability.envelope_dataset import MET, NOT_KNOWN, NOT_MET
+from proprotor.stability.envelope_dataset import MET, NOT_KNOWN, NOT_MET, with_worst
 from proprotor.stability.floquet import floquet
 from proprotor.stability.flutter import FlutterPoint, boundary_of, flutter_point
 from proprotor.stability.following import Branches, follow
@@ -186,4 +186,5 @@ __all__ = [
     "unit_of_input",
     "unit_of_output",
     "with_changes",
+    "with_worst",
 ]

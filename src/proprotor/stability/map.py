@@ -90,8 +90,8 @@ def stability_map(
         of the mode that grows most, rad/s; reason of points that failed, warning of points that are doubtful. boundary
         (vertex, axis): the boundary between stable and unstable points, NaN between its lines; boundary_eigenvalue
         (vertex,), the root that crosses at a vertex, rad/s; boundary_warning (vertex,), what makes a vertex doubtful.
-        Attributes: level, airspeed in m/s where it is given, eigen_solves, and the case and its options
-        (`proprotor.model.stamp`).
+        The axes have the deck's own values as attribute of_deck. Attributes: level, airspeed in m/s where it is given,
+        eigen_solves, and the case and its options (`proprotor.model.stamp`).
 
     Raises
     ------
@@ -126,8 +126,15 @@ def stability_map(
         found.attrs[AIRSPEED] = float(in_metres_per_second(airspeed, case.operation.density))
     found.attrs["eigen_solves"] = int(np.isfinite(largest).sum()) + solves
     for name in names:
-        found[name].attrs["units"] = "m/s" if name == AIRSPEED else inputs_at(case, [name])[name].unit
+        found[name].attrs |= {"units": "m/s"} if name == AIRSPEED else _of_deck(case, name)
     return found
+
+
+def _of_deck(case: Configuration, name: str) -> dict[str, Any]:
+    """Return the unit of an input, and its value in the deck where that is one number."""
+    own = inputs_at(case, [name])[name]
+    value = {"of_deck": float(own.si)} if np.ndim(own.si) == 0 else {}
+    return {"units": own.unit} | value
 
 
 def _axes(case: Configuration, axes: Mapping[str, ArrayLike]) -> tuple[tuple[str, str], tuple[Array, Array]]:
