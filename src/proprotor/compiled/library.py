@@ -33,7 +33,8 @@ _FLAGS = (
     "-fno-math-errno",
     "-fno-trapping-math",
 )
-_OWN_PROCESSOR = ("-march=native", "-mcpu=native")  # by GCC and Clang on most processors, and on some
+# By GCC and Clang: on most processors, with registers as wide as these are, and on some others.
+_OWN_PROCESSOR = (("-march=native", "-mprefer-vector-width=512"), ("-march=native",), ("-mcpu=native",))
 _PATIENCE = 300  # s, for the compiler
 _CACHE = "PROPROTOR_CACHE"
 _HELP = f"set {_CACHE} to a folder whose files may be run"
@@ -124,13 +125,13 @@ def _version_of(compiler: tuple[str, ...]) -> bytes:
 
 
 def _own_processor(compiler: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the flag for the instructions of this processor, if the compiler knows one."""
-    for flag in _OWN_PROCESSOR:
+    """Return the flags for the instructions of this processor that the compiler knows."""
+    for flags in _OWN_PROCESSOR:
         try:
-            _output_of((*compiler, flag, "-E", "-x", "c", os.devnull), "")
+            _output_of((*compiler, *flags, "-E", "-x", "c", os.devnull), "")
         except Unavailable:
             continue
-        return (flag,)
+        return flags
     return ()
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from proprotor.model.blade_comparison import hinged_frequencies, in_vacuum
 from proprotor.plots import small_print
 from proprotor.plots.canvas import grid, note
-from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE, SMALL_SIZE, in_style, white_box
+from proprotor.plots.style import COLOURS, GREY, LABEL_SIZE, SMALL_SIZE, in_style
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.elastic_blade import ElasticBlade
 from proprotor.rotor.hinged_blade import HingedBlade
@@ -19,7 +19,6 @@ from proprotor.typing import Array, Axes, Figure
 _MODES = 4
 _SPEEDS = 25
 _HARMONICS = 5
-_NAMED = 0.93  # of the highest rotor speed: where the names of the harmonics stand
 _RPM = np.pi / 30
 _ELASTIC: dict[str, Any] = {"color": COLOURS[0], "linewidth": 1.4}
 _HINGED: dict[str, Any] = {"color": COLOURS[2], "linestyle": "--", "linewidth": 1.8}
@@ -63,7 +62,6 @@ def plot_blade_frequencies(
         fan = blade.modes(speeds, middle, hold, _MODES).frequency / (2 * np.pi)
         hinged = turning[column] / (2 * np.pi)
         _draw(below, speeds / _RPM, fan, hinged)
-        _draw_harmonics(below, speeds)
         above.set_title(("All blades alike", "Cyclic, on a free gimbal")[column], fontsize=LABEL_SIZE + 1)
         above.set_xlabel("Collective at 0.75 R (deg)")
         below.set_xlabel("Rotor speed (rpm)")
@@ -73,6 +71,8 @@ def plot_blade_frequencies(
     axes[0, 0].legend()
     axes[0, 0].set_ylim(0, 1.05 * float(elastic.max()))
     axes[1, 0].set_ylim(0, 1.05 * float(fan.max()))
+    for below in axes[1]:
+        _draw_harmonics(below, speeds)
     note(axes[0, 0], "Blades in a vacuum, in rotating axes")
     note(axes[0, 0], f"Above at {speed / _RPM:.4g} rpm, which a line marks below")
     note(axes[1, 0], f"Below at {np.degrees(middle):.3g}° collective")
@@ -89,9 +89,10 @@ def _draw(ax: Axes, across: Array, elastic: Array, hinged: Array) -> None:
 
 
 def _draw_harmonics(ax: Axes, speeds: Array) -> None:
-    """Draw the multiples of the rotor speed."""
+    """Draw the multiples of the rotor speed, their names beside the axes, of which the limits are set."""
     for n in range(1, _HARMONICS + 1):
         ax.plot(speeds / _RPM, n * speeds / (2 * np.pi), color="0.75", linewidth=0.7, zorder=0)
-        end = (_NAMED * speeds[-1] / _RPM, n * _NAMED * speeds[-1] / (2 * np.pi))
-        centred: dict[str, Any] = {"ha": "center", "va": "center", "bbox": white_box(0.5), "zorder": 0.5}
-        ax.annotate(f"{n}/rev", end, fontsize=SMALL_SIZE, color=GREY, annotation_clip=True, **centred)
+        end = (speeds[-1] / _RPM, n * speeds[-1] / (2 * np.pi))
+        beside: dict[str, Any] = {"xytext": (3, 0), "textcoords": "offset points", "va": "center"}
+        if end[1] <= ax.get_ylim()[1]:
+            ax.annotate(f"{n}/rev", end, fontsize=SMALL_SIZE, color=GREY, annotation_clip=False, **beside)

@@ -8,11 +8,14 @@ import numpy as np
 
 from proprotor.errors import InputError
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
+from proprotor.plots.input_names import output_name
+from proprotor.plots.line_of_sweep import written
 from proprotor.plots.style import in_style, line_style
 from proprotor.stability import places_of
 from proprotor.typing import Axes, Dataset
 from proprotor.units import KNOT, KTAS
 
+_SPECTRA = {"von-karman": "von Kármán’s spectrum", "dryden": "Dryden’s spectrum"}
 _USUAL = ("force_x", "force_z", "moment_x", "moment_y")
 
 
@@ -56,14 +59,15 @@ def plot_gust_spectra(
         rms, unit = float(own.rms), str(own.output_unit.item())
         density = own.psd.values / rms**2 * 2 * np.pi if rms > 0 else np.full(len(hertz), np.nan)
         style = line_style(place) | {"marker": "", "linewidth": 1.6}
-        ax.plot(hertz, density, label=f"{known[column]}, rms {rms:.3g} {unit}", **style)
+        ax.plot(hertz, density, label=f"{output_name(known[column])}, rms {rms:.3g} {written(unit)}", **style)
     ax.set(
         xscale="log", yscale="log", xlabel="Frequency (Hz)", ylabel="Spectral density over variance (1/Hz)"
     )
     grid(ax)
     ax.legend()
     about = found.attrs
-    what = f"{about['component'].capitalize()} turbulence, {about['spectrum']}, {about['intensity']:g} m/s"
+    spectrum = _SPECTRA[str(about["spectrum"])]
+    what = f"{about['component'].capitalize()} turbulence, {spectrum}, {about['intensity']:g} m/s"
     at = f" at {float(found.airspeed) / KNOT:.4g} {KTAS}" if "airspeed" in found else ""
     note(ax, what + at)
     say_origin(ax, found.attrs, filter(None, [found.warning.item()]))

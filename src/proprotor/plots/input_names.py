@@ -1,4 +1,4 @@
-"""Short names of a deck's inputs for plots: "chord: frequency" for support.modes[chord].frequency."""
+"""Names of inputs and outputs for plots: "chord: frequency" for support.modes[chord].frequency."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 
+_LOAD = re.compile(r"(?:(.+) )?(force|moment)_([xyz])")
 _MODE = re.compile(r"support\.modes\[(.+)\]\.(.+)")
 _OTHERS = {"rotor.chord": "blade chord"}  # the wing has a chord too, and one mode is called chord
 
@@ -17,6 +18,14 @@ def short_name(path: str) -> str:
     if path in _OTHERS:
         return _OTHERS[path]
     return path.removeprefix("rotor.").removeprefix("operation.").replace(".", " ").replace("_", " ")
+
+
+def output_name(name: str) -> str:
+    """Return an output as a sentence has it: "hub force along x" for force_x, "hub moment about y" for moment_y."""
+    if found := _LOAD.fullmatch(name):
+        way = "along" if found[2] == "force" else "about"
+        return " ".join(filter(None, (found[1], f"hub {found[2]} {way} {found[3]}")))
+    return name.replace("_", " ")
 
 
 def short_names(paths: Sequence[str]) -> list[str]:

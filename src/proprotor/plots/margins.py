@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from proprotor.model.doubts import doubts_along, footnotes
+from proprotor.model.doubts import doubtful_near, doubts_along, footnotes, marked
 from proprotor.model.stamp import density_of
 from proprotor.plots import small_print
 from proprotor.plots.canvas import grid, note, say_origin, two_axes, write_title
@@ -54,8 +54,8 @@ def plot_margins(
     """
     line = axis_of("airspeed", margins.airspeed.values, "m/s", unit, density_of(margins.attrs))
     figure, (above, below) = two_axes((8, 7))
-    write_title(figure, title)
     needed = Needed(gain_margin, phase_margin)
+    write_title(figure, title, _first_lost(margins, line, needed))
     _draw(above, line, margins, decibels(margins), _TOPS[0], needed.gain, "dB")
     _draw(
         below,
@@ -72,6 +72,40 @@ def plot_margins(
     small_print.add(below, footer)
     say_origin(below, margins.attrs, _doubts(margins, line))
     return figure
+
+
+def _first_lost(margins: Dataset, line: Positions, needed: Needed) -> str:
+    """Return which loop lacks a margin at the lowest airspeed, interpolated between the airspeeds of the result."""
+    degrees = float(np.degrees(needed.phase))
+    lost = [
+        (at, f"{loop} has less than {least:.3g} {unit}")
+        for values, least, unit in (
+            (decibels(margins), needed.gain, "dB of gain margin"),
+            (np.degrees(margins.phase_margin.values), degrees, "deg of phase margin"),
+        )
+        for loop, own in zip(margins.loop.values.tolist(), values.T, strict=True)
+        if (at := _falls_below(margins.airspeed.values, own, least)) is not None
+    ]
+    unstable = margins.airspeed.values[~margins.stable.values & (margins.reason.values == "")]
+    lost += [(float(at), "the closed loop is unstable") for at in unstable[:1]]
+    unit = written(line.unit)
+    if not lost:
+        return f"all loops keep {needed.text} from {line.values[0]:.4g} to {line.values[-1]:.4g} {unit}"
+    at, what = min(lost)
+    doubtful = doubtful_near(margins.airspeed.values, margins.warning.values, at)
+    return f"{what} from {marked(f'{at / line.factor:.0f}', doubtful)} {unit}"
+
+
+def _falls_below(airspeed: Array, values: Array, least: float) -> float | None:
+    """Return the lowest airspeed at which a margin is less than the least one; None where it never is."""
+    below = np.flatnonzero(values < least)
+    if not len(below):
+        return None
+    place = int(below[0])
+    before = values[place - 1] if place else np.nan
+    if not np.isfinite(before):
+        return float(airspeed[place])
+    return float(np.interp(least, [values[place], before], [airspeed[place], airspeed[place - 1]]))
 
 
 def _doubts(margins: Dataset, line: Positions) -> list[str]:

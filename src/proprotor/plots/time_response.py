@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 from proprotor.errors import InputError
 from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
+from proprotor.plots.input_names import output_name
+from proprotor.plots.line_of_sweep import written
 from proprotor.plots.style import in_style, line_style
 from proprotor.stability import places_of
 from proprotor.typing import Axes, Dataset
@@ -53,13 +55,12 @@ def plot_time_response(
             style = line_style(row + place) | {"marker": "", "linewidth": 1.4}
             of_gust = "" if gradient is None else f"H = {gradient:.3g} m"
             label = ", ".join(
-                filter(None, (known[column] if len(columns) > 1 or not of_gust else "", of_gust))
+                filter(None, (output_name(known[column]) if len(columns) > 1 or not of_gust else "", of_gust))
             )
             ax.plot(found.time.values, response.values[row, :, column], label=label, **style)
     ax.axhline(0, color="black", linewidth=0.6)
-    ax.set(
-        xlabel="Time (s)", ylabel=f"{', '.join(known[column] for column in columns)} ({next(iter(units))})"
-    )
+    names = ", ".join(output_name(known[column]) for column in columns)
+    ax.set(xlabel="Time (s)", ylabel=f"{names[:1].upper()}{names[1:]} ({written(next(iter(units)))})")
     ax.margins(x=0)
     grid(ax)
     ax.legend()

@@ -36,7 +36,7 @@ def kept(function: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
     def once(*given: _Given.args, **named: _Given.kwargs) -> _Result:
         if named:
             return function(*given, **named)
-        key = tuple(one if isinstance(one, _BY_VALUE) else id(one) for one in given)
+        key = tuple([one if isinstance(one, _BY_VALUE) else id(one) for one in given])
         if (known := found.get(key)) is not None:
             return known[1]
         result = function(*given, **named)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from proprotor.study.request import Request
 
-_MOST_POINTS = 2000  # of a batch: enough for NumPy's own cost to vanish beside LAPACK's
+_MOST_POINTS = 2500  # of a batch: enough for the cost of NumPy itself to vanish; many more leave the cache
 _MOST_SEARCHED = 10_000  # of a batch of searches, which solve a part of their points at a time
 _FEWEST_POINTS = 50
 _BYTES_PER_POINT = 100_000  # while a batch is analysed; the XV-15 takes 30 kB, 46 kB with vectors
