@@ -12,6 +12,7 @@ from proprotor import plots
 from proprotor.plots import small_print
 from proprotor.plots.style import mode_styles
 from proprotor.stability.boundary_lines import boundary_lines
+from proprotor.stability.margin_ranges import Needed, kept_ranges
 from proprotor.tables.boundary_table import of_mode, only_first
 
 matplotlib.use("Agg")
@@ -162,7 +163,7 @@ def test_a_mode_looks_the_same_in_sweeps_maps_and_boundaries(sweep, against, sta
 def test_the_headline_of_boundaries_is_the_lowest_that_is_drawn(against):
     for shown in (against, only_first(against), of_mode(against, "chord")):
         ax = plots.plot_boundary_against(shown, unit="rpm")
-        told = re.fullmatch(r"lowest boundary: (.*) at (\d+)\?? KTAS, at (\d+) rpm", ax.get_title())
+        told = re.fullmatch(r"lowest boundary: (.*) at (\d+)\?? KTAS and (\d+) rpm", ax.get_title())
         assert int(told[2]) == round(float(np.nanmin(shown.airspeed)) / KNOT)
     turned = pp.load_case("xv15", {"operation.rotor_speed": f"{told[3]} rpm"})
     assert stable(turned, 0.9 * float(np.nanmin(against.airspeed)) / KNOT)
@@ -226,3 +227,21 @@ def test_the_headline_of_an_envelope_is_its_worst_case():
     assert told.startswith("not met") == bool((found.verdict == "not met").any())
     low = found.isel(altitude=[0])
     assert f"{100 * float(low.margin.min()):+.0f} %".replace("-", "−") in plots.plot_envelope(low).get_title()
+
+
+def test_the_headline_of_margins_is_where_the_first_is_lost():
+    """Beside the search that halves between two airspeeds, and beside made-up margins that are kept."""
+    loop = pp.ControlLoop(
+        name="whirl", sensors="gimbal_1s", inputs="cyclic_1s", gain=0.1, actuator_bandwidth=60.0
+    )
+    case = CASE.with_control(loop)
+    found = case.margins(np.arange(100.0, 181.0, 5.0))
+    texts = {text.get_text() for text in plots.plot_margins(found, gain_margin=20.0).texts}
+    told = next(filter(None, (re.fullmatch(r"(.*) from (\d+)\?? KTAS", text) for text in texts)), None)
+    (kept,) = kept_ranges(case, found, Needed(gain=20.0))
+    assert not kept.open_stop and abs(int(told[2]) - kept.stop / KNOT) < 3
+    assert kept.lost_by == "gain margin" and told[1] == "whirl has less than 20 dB of gain margin"
+    easy = found.assign(gain_margin=found.gain_margin * 0 + 1e3, gain_reduction=found.gain_reduction * 0)
+    easy = easy.assign(phase_margin=found.phase_margin * 0 + 3.0, stable=found.stable | True)
+    texts = [text.get_text() for text in plots.plot_margins(easy).texts]
+    assert any(text.startswith("all loops keep 6 dB and 45 deg from 194.4 to") for text in texts)

@@ -25,7 +25,8 @@ def test_spectra_are_over_their_variance_and_in_hertz():
     rms, unit = float(found.rms[0]), found.output_unit.values[0]
     assert x * 2 * np.pi == pytest.approx(found.frequency.values)
     assert y / (2 * np.pi) * rms**2 == pytest.approx(found.psd.values[:, 0])
-    assert ax.get_legend().get_texts()[0].get_text() == f"force_x, rms {rms:.3g} {unit}"
+    assert ax.get_legend().get_texts()[0].get_text() == f"hub force along x, rms {rms:.3g} {unit}"
+    assert ax.get_legend().get_texts()[1].get_text().endswith("N·m")
 
 
 def test_spectra_of_several_airspeeds_or_of_none_are_refused():
@@ -42,10 +43,13 @@ def test_outputs_over_time_have_a_line_for_each_gust():
     ax = found.proprotor.plot()
     lines = [line for line in ax.lines if not line.get_label().startswith("_")]
     assert [line.get_label() for line in lines] == [f"H = {h} m" for h in (10, 30, 50)]
-    assert ax.get_ylabel() == "force_x (N)"
+    assert ax.get_ylabel() == "Hub force along x (N)"
+    largest = np.abs(found.response.sel(output="force_x")).max("time")
+    at = int(largest.values.argmax())
+    assert ax.get_title() == f"largest: {float(largest[at]):.3g} N, in the gust with H = {(10, 30, 50)[at]} m"
     assert lines[2].get_ydata() == pytest.approx(found.response.sel(output="force_x").values[2])
     two = plots.plot_time_response(found.isel(gradient=0, drop=True), outputs=["force_x", "force_z"])
-    assert two.get_ylabel() == "force_x, force_z (N)"
+    assert two.get_ylabel() == "Hub force along x, hub force along z (N)"
     with pytest.raises(pp.InputError, match="must have one unit"):
         plots.plot_time_response(found, outputs=["force_x", "x"])
 

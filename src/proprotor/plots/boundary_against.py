@@ -190,10 +190,10 @@ def _lowest(found: Dataset, line: Positions, speeds: Array, unit: str) -> str:
         return "no mode becomes unstable in the search"
     row, place = np.unravel_index(int(onsets.argmin()), onsets.shape)
     mode, label = str(found["mode"].values[row, place]), str(found.branch.values[place])
-    name = mode if label in (FIRST, mode) else f"{label}, there {mode},"
+    name = mode if label in (FIRST, mode) else f"{label} (here {mode})"
     speed = marked(f"{speeds[row, place]:.0f}", found.warning.values[row, place])
     value = f"{line.values[row]:.4g} {written(line.unit)}".rstrip()
-    return f"lowest boundary: {name} at {speed} {unit}, at {value}"
+    return f"lowest boundary: {name} at {speed} {unit} and {value}"
 
 
 def _mode_of(label: str) -> str:

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from proprotor.errors import InputError
-from proprotor.plots.canvas import axes_or_new, grid, note, say_origin
+from proprotor.plots.canvas import axes_or_new, grid, note, say_origin, write_headline
 from proprotor.plots.input_names import output_name
 from proprotor.plots.line_of_sweep import written
 from proprotor.plots.style import in_style, line_style
 from proprotor.stability import places_of
-from proprotor.typing import Axes, Dataset
+from proprotor.typing import Array, Axes, Dataset
+
+
+def _largest(values: Array, gradients: Array, unit: str) -> str:
+    """Return the largest of responses (gradients, times, outputs), and the gust that has it."""
+    peaks = np.nan_to_num(np.abs(values)).max(axis=(1, 2))
+    place = int(peaks.argmax())
+    return f"largest: {peaks[place]:.3g} {written(unit)}, in the gust with H = {gradients[place]:.3g} m"
 
 
 @in_style
@@ -66,5 +75,6 @@ def plot_time_response(
     ax.legend()
     if "gradient" in found.dims:
         note(ax, "H: distance in which a gust grows from nothing to its full speed")
+        write_headline(ax, _largest(response.values[..., columns], found.gradient.values, next(iter(units))))
     say_origin(ax, found.attrs, filter(None, [str(found.warning.item())]))
     return ax
