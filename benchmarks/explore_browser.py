@@ -31,8 +31,11 @@ from tests.explore_server import serving
 _BATCH = 50  # moves of one call of the browser
 _ROW = 250  # moves between two rows that are printed
 _DIGITS = (1, 0, 0, 1, 0, 0, 1)  # of the columns of a row
+# The page keeps this function: the browser keeps the text of each script that is sent to it, which would count as the
+# page's own memory.
 _MOVES = """
-const [seed, moves, done] = arguments, LONGEST = 10000;
+window.moveSliders = (seed, moves, done) => {
+const LONGEST = 10000;
 const page = Bokeh.documents[0], find = (name) => page.get_model_by_name(name);
 const lines = find("lines"), boundary = find("boundary"), curves = [], maps = [];
 const sliders = [...find("sliders").children].filter((one) => one.type === "Slider");
@@ -66,7 +69,11 @@ const drawn = (source, longest) => new Promise((resolve) => {
   }
   done([curves, maps, lost]);
 })();
+};
 """
+
+
+_CALL = "moveSliders(...arguments)"
 
 
 @dataclass
@@ -91,7 +98,7 @@ def moved(driver: Any, moves: int, seed: int, end: float = np.inf) -> Times:
     for batch in range(0, moves, _BATCH):
         if time.monotonic() > end:
             break
-        times.add(*driver.execute_async_script(_MOVES, seed + batch, min(_BATCH, moves - batch)))
+        times.add(*driver.execute_async_script(_CALL, seed + batch, min(_BATCH, moves - batch)))
     return times
 
 
@@ -116,6 +123,7 @@ def opened(address: str) -> webdriver.Chrome:
     while not driver.execute_script(f"return {made} && !!Bokeh.documents[0].get_model_by_name('lines')"):
         time.sleep(0.2)
     time.sleep(3)
+    driver.execute_script(_MOVES)
     return driver
 
 

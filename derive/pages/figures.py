@@ -394,13 +394,21 @@ def damping_against_flap_hub_inertia() -> Figure:
     consistent = xv15().rotor.flap_hub_inertia / unit
     for ax, curve in zip(axes, (least, damping), strict=True):
         ax.plot(inertias, curve, color=BLACK, linewidth=2)
-        ax.axvline(bound, color=RED, linestyle="--", label=r"$\sqrt{I_b I_β}$")
-        ax.axvline(consistent, color=BLUE, linestyle=":", label=f"one blade, {consistent:.1f}")
-        ax.axvline(values["I_βα"], color=GREEN, linestyle="-.", label=f"printed, {values['I_βα']:g}")
+        ax.axvline(bound, color=RED, linestyle="--")
+        ax.axvline(consistent, color=BLUE, linestyle=":")
+        ax.axvline(values["I_βα"], color=GREEN, linestyle="-.")
+    names = (
+        (bound, r"$\sqrt{I_b I_β}$", RED, "left"),
+        (consistent, f"one blade, {consistent:.1f}", BLUE, "right"),
+        (values["I_βα"], f"printed, {values['I_βα']:g}", GREEN, "right"),
+    )
+    for place, name, colour, side in names:  # beside their lines, which a legend would cover
+        offset = {"textcoords": "offset points", "xytext": (3 if side == "left" else -3, 4)}
+        at = {"xycoords": axes[0].get_xaxis_transform(), "ha": side, "va": "bottom", "color": colour}
+        axes[0].annotate(name, (place, 0), fontsize=LABEL_SIZE, **offset, **at)
     x = "$I_{βα}$ (slug ft²)"
     _titled(axes[0], "Mass matrix scaled to unit diagonal", x, "Least eigenvalue")
     _titled(axes[1], "Least damped mode at 250 kt", x, "Damping (% of critical)")
-    axes[0].legend(framealpha=1, edgecolor="none", loc="lower left")
     _tell_case(axes[0])
     return figure
 

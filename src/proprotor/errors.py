@@ -194,10 +194,16 @@ def printable(text: str, keep: str = "") -> str:
 
 
 def _on_one_line(value: object) -> str:
-    """Return a value as a message shows it: printable, on one line, and not too long."""
+    """Return a value as a message shows it: printable, on one line, and cut in its middle where it is too long.
+
+    Its end stays, where the name of a file is.
+    """
     if isinstance(value, bool):
         value = as_toml(value)
     if isinstance(value, dict):
         value = "{ … }"
     text = printable(str(value) or '""')
-    return text if len(text) <= _WIDEST_VALUE else f"{text[: _WIDEST_VALUE - 1]}…"
+    if len(text) <= _WIDEST_VALUE:
+        return text
+    start = _WIDEST_VALUE // 3
+    return f"{text[:start]}…{text[start + 1 - _WIDEST_VALUE :]}"

@@ -102,7 +102,7 @@ def test_chord_and_pitch_inertia(tmp_path):
             "has decimal commas (line 4) and decimal points",
         ),
         (lambda t: "", "is empty"),
-        (lambda t: "\n".join(t.split("\n")[:2]), "must be a list of at least 3 stations"),
+        (lambda t: "\n".join(t.split("\n")[:2]), "must have at least 3 stations, and has 1"),
     ],
 )
 def test_a_fault_is_one_line(tmp_path, change, message):

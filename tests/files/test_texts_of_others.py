@@ -252,3 +252,22 @@ def test_markup_in_a_deck_is_text_everywhere(hostile, tmp_path):
     text = page.read_text(encoding="utf-8")
     assert "<script" not in text and "{{7*7}}" in text and "&lt;script&gt;alert(1)" in text
     assert "&amp;amp;" in text
+
+
+NO_TEXTS = {
+    "a spreadsheet or an archive": b"PK\x03\x04\x14\x00\x06\x00",
+    "an old spreadsheet or document": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+    "a file of HDF5": b"\x89HDF\r\n\x1a\n",
+    "a file of MATLAB": b"MATLAB 5.0 MAT-file, Platform: GLNXA64",
+}
+
+
+@pytest.mark.parametrize("what", NO_TEXTS)
+@pytest.mark.parametrize("kind", ["deck", "C81", "stations", "points"])
+def test_a_file_that_is_no_text_is_named_as_what_it_is(tmp_path, kind, what):
+    path = tmp_path / {"deck": "case.toml", "C81": "airfoil.c81"}.get(kind, "table.csv")
+    path.write_bytes(NO_TEXTS[what] + bytes(200))
+    with pytest.raises(pp.InputError) as told:
+        READERS[kind][1](path)
+    assert f"must be text, and is {what}" in str(told.value) and "\n" not in str(told.value)
+    assert path.name in str(told.value)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from proprotor.errors import InputError
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.hinged_blade import hinged_blade, spring_matrix
 
@@ -83,3 +84,20 @@ def test_the_springs_have_the_slope_that_their_pitch_gives_them():
     ends = [spring_matrix(numbers, PITCH + side * 1e-5)[0] for side in (1, -1)]
     _, slope = spring_matrix(numbers, PITCH)
     np.testing.assert_allclose(slope, (ends[0] - ends[1]) / 2e-5, rtol=1e-6, atol=1e-6 * LAG)
+
+
+def test_a_blade_too_heavy_for_its_stiffness_is_refused_in_words():
+    """A table in the wrong unit of mass: its bending is all centrifugal, and no spring at a hinge stands for that."""
+    slug_per_foot = 47.880259
+    heavy = BladeStations(
+        radius=np.array([0.20, 0.24, 0.26, 0.34, 0.36, 1.00, 1.90, 2.85, 3.80]),
+        mass_per_length=slug_per_foot * np.array([40, 40, 30, 30, 20, 9, 8, 7, 7]),
+        flatwise_stiffness=np.array([4e6, 4e6, 6e3, 6e3, 3e6, 2e6, 1e6, 5e5, 2e5]),
+        edgewise_stiffness=np.array([4e6, 4e6, 4e4, 4e4, 6e6, 5e6, 4e6, 2e6, 1e6]),
+        torsion_stiffness=np.array([4e5, 4e5, 3e5, 3e5, 3e5, 1e5, 5e4, 2e4, 7e3]),
+        twist=np.radians([29, 29, 29, 28, 28, 18, 7, 0, -6]),
+        control_stiffness=3e4,
+        pitch_bearing=0.24,
+    )
+    with pytest.raises(InputError, match=r"have no hinged blade: .* in lag more easily than a straight blade"):
+        hinged_blade(heavy, 458 * np.pi / 30, np.radians([20.0, 30.0, 40.0, 50.0]))

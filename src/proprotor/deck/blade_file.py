@@ -10,7 +10,7 @@ from typing import Any
 from proprotor.errors import InputError
 from proprotor.files.csv_columns import Fault, Head, Line, factor_of, fault_at, number_in, table_of
 from proprotor.files.text import read_text
-from proprotor.rotor.blade_stations import BladeStations
+from proprotor.rotor.blade_stations import FEWEST_STATIONS, BladeStations
 from proprotor.typing import Array
 
 _LARGEST = 1_000_000  # bytes
@@ -124,6 +124,8 @@ def _columns(own: dict[str, Head], rows: Iterator[Line], scales: dict[str, float
         _check_order(number, own["radius"], found["radius"])
         if len(found["radius"]) > _MOST_STATIONS:
             raise Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
+    if len(found["radius"]) < FEWEST_STATIONS:
+        raise Fault(f"must have at least {FEWEST_STATIONS} stations, and has {len(found['radius'])}")
     return {field: np.array(values) for field, values in found.items()}
 
 

@@ -26,6 +26,15 @@ _MARKS = {
     codecs.BOM_UTF16_LE: "utf-16-le",
     codecs.BOM_UTF16_BE: "utf-16-be",
 }
+# How files begin that are no text, and what they are.
+_NO_TEXTS = {
+    b"PK\x03\x04": "a spreadsheet or an archive: save its table as CSV, or unpack it",
+    b"\xd0\xcf\x11\xe0": "an old spreadsheet or document: save its table as CSV",
+    b"\x89HDF": "a file of HDF5",
+    b"MATLAB 5": "a file of MATLAB",
+    b"\x93NUMPY": "an array of NumPy",
+    b"%PDF": "a PDF",
+}
 _LONGEST_MARK = max(map(len, _MARKS))
 
 
@@ -60,6 +69,8 @@ def read_text(
         raise InputError(field, label, "no such file")
     if len(content) > largest:
         raise InputError(field, label, f"must not be larger than {largest} bytes")
+    if what := next((what for start, what in _NO_TEXTS.items() if content.startswith(start)), ""):
+        raise InputError(field, label, f"must be text, and is {what}")
     mark, encoding = _encoding(content, encoding)
     try:
         return content[mark:].decode(encoding)

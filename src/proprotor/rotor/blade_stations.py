@@ -9,7 +9,7 @@ import numpy as np
 from proprotor.errors import InputError, check_finite
 from proprotor.typing import Array
 
-_FEWEST = 3
+FEWEST_STATIONS = 3
 _ALONG = ("mass_per_length", "flatwise_stiffness", "edgewise_stiffness", "torsion_stiffness")
 _OPTIONAL = {"chord": "above zero", "pitch_inertia_per_length": "not negative"}
 _OPTIONAL |= dict.fromkeys(("mass_offset", "aerodynamic_center"), "")
@@ -82,8 +82,8 @@ class BladeStations:
     def _check_columns(self) -> None:
         """Refuse columns of different lengths, stations that do not increase, and a bearing beyond the blade."""
         count = self.radius.size
-        if self.radius.ndim != 1 or count < _FEWEST:
-            rule = f"must be a list of at least {_FEWEST} stations"
+        if self.radius.ndim != 1 or count < FEWEST_STATIONS:
+            rule = f"must be a list of at least {FEWEST_STATIONS} stations"
             raise InputError("radius", f"array of shape {self.radius.shape}", rule)
         for name in (*_ALONG, "twist", *_OPTIONAL):
             value = getattr(self, name)

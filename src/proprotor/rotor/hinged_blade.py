@@ -20,6 +20,7 @@ import numpy as np
 from proprotor_equations import blade_element as element
 from proprotor_equations import flap_lag_springs
 
+from proprotor.errors import InputError
 from proprotor.rotor.blade_stations import BladeStations
 from proprotor.rotor.elastic_blade import ElasticBlade
 from proprotor.rotor.generated import evaluate
@@ -90,6 +91,11 @@ def hinged_blade(stations: BladeStations, rotor_speed: float, pitch: Array) -> H
     Returns
     -------
     HingedBlade
+
+    Raises
+    ------
+    InputError
+        For a blade that bends more easily than a straight blade on a hinge without a spring.
     """
     blade = ElasticBlade(stations)
     flexibility = blade.flexibility(rotor_speed, pitch)
@@ -104,6 +110,7 @@ def hinged_blade(stations: BladeStations, rotor_speed: float, pitch: Array) -> H
     )
     springs = deflection.stiffness - np.diag(centrifugal)
     numbers |= _springs(np.linalg.inv(springs), pitch, _share_of_blade(blade, deflection, pitch))
+    _check_springs(numbers)
     turn, total = _turns(blade, deflection, pitch)
     _, slope = spring_matrix(numbers, pitch)
     numbers["control_stiffness"] = _nearest(blade, slope, turn)
@@ -233,6 +240,18 @@ def _as_springs(alike: float, hub: float, cosine: float, sine: float, share: flo
         "lag_outboard_fraction": float(np.clip(edge / lag, 0, 1)),
         "structural_pitch_offset": float(np.arctan2(sine, cosine) / 2),
     }
+
+
+def _check_springs(numbers: dict[str, float]) -> None:
+    """Refuse a blade whose shape needs a spring that pushes away from the middle."""
+    for axis in ("flap", "lag"):
+        if numbers[f"{axis}_stiffness"] < 0:
+            raise InputError(
+                "stations",
+                None,
+                f"have no hinged blade: at this rotor speed the blade bends in {axis} more easily than a straight "
+                "blade on a free hinge; see whether the units of mass and stiffness are right",
+            )
 
 
 def _turns(blade: ElasticBlade, deflection: Deflection, pitch: Array) -> tuple[Array, Array]:
