@@ -403,8 +403,13 @@ def damping_against_flap_hub_inertia() -> Figure:
         (values["I_βα"], f"printed, {values['I_βα']:g}", GREEN, "right"),
     )
     for place, name, colour, side in names:  # beside their lines, which a legend would cover
-        offset = {"textcoords": "offset points", "xytext": (3 if side == "left" else -3, 4)}
-        at = {"xycoords": axes[0].get_xaxis_transform(), "ha": side, "va": "bottom", "color": colour}
+        offset: dict[str, Any] = {"textcoords": "offset points", "xytext": (3 if side == "left" else -3, 4)}
+        at: dict[str, Any] = {
+            "xycoords": axes[0].get_xaxis_transform(),
+            "ha": side,
+            "va": "bottom",
+            "color": colour,
+        }
         axes[0].annotate(name, (place, 0), fontsize=LABEL_SIZE, **offset, **at)
     x = "$I_{βα}$ (slug ft²)"
     _titled(axes[0], "Mass matrix scaled to unit diagonal", x, "Least eigenvalue")

@@ -14,6 +14,7 @@ from proprotor.plots.style import mode_styles
 from proprotor.stability.boundary_lines import boundary_lines
 from proprotor.stability.margin_ranges import Needed, kept_ranges
 from proprotor.tables.boundary_table import of_mode, only_first
+from proprotor.tables.sweep_summary import growth_rate
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt
@@ -84,6 +85,17 @@ def test_names_tell_where_modes_are_unstable(sweep, plot):
         (place,) = np.flatnonzero((real[:-1] < 0) & (real[1:] >= 0))
         assert len(told) == 1 and speeds[place] <= int(told[0]) <= speeds[place + 1] + 0.5
     assert "unstable" in label(ax, "beam")
+
+
+def test_every_name_of_an_unstable_root_says_so_wherever_the_name_comes_to_it():
+    """Over the highest airspeeds names pass to roots that are unstable already."""
+    sweep = CASE.sweep("71:426:7kt")
+    ax = plots.plot_damping(sweep)
+    unstable = (growth_rate(sweep) > 0).any(axis=0)
+    assert unstable.sum() > 3
+    for mode, is_unstable in zip(sweep.mode.values.tolist(), unstable, strict=True):
+        names = [text.get_text() for text in ax.texts if text.get_text().startswith(mode)]
+        assert all(("unstable" in name) == is_unstable for name in names), mode
 
 
 @pytest.mark.parametrize("plot", DRAWN)

@@ -46,7 +46,9 @@ def test_outputs_over_time_have_a_line_for_each_gust():
     assert ax.get_ylabel() == "Hub force along x (N)"
     largest = np.abs(found.response.sel(output="force_x")).max("time")
     at = int(largest.values.argmax())
-    assert ax.get_title() == f"largest: {float(largest[at]):.3g} N, in the gust with H = {(10, 30, 50)[at]} m"
+    number, gust = ax.get_title().removeprefix("largest: ").split(" N, in the gust with H = ")
+    assert gust == f"{(10, 30, 50)[at]} m" and "e" not in number
+    assert float(number.replace(",", "")) == pytest.approx(float(largest[at]), rel=5e-3)
     assert lines[2].get_ydata() == pytest.approx(found.response.sel(output="force_x").values[2])
     two = plots.plot_time_response(found.isel(gradient=0, drop=True), outputs=["force_x", "force_z"])
     assert two.get_ylabel() == "Hub force along x, hub force along z (N)"

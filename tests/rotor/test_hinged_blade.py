@@ -99,5 +99,7 @@ def test_a_blade_too_heavy_for_its_stiffness_is_refused_in_words():
         control_stiffness=3e4,
         pitch_bearing=0.24,
     )
-    with pytest.raises(InputError, match=r"have no hinged blade: .* in lag more easily than a straight blade"):
+    with pytest.raises(
+        InputError, match=r"have no hinged blade: .* in lag more easily than a straight blade"
+    ):
         hinged_blade(heavy, 458 * np.pi / 30, np.radians([20.0, 30.0, 40.0, 50.0]))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from proprotor.model.doubts import doubtful_near, marked
 from proprotor.plots.line_of_sweep import Positions, written
-from proprotor.tables.sweep_summary import UnstableRange, damped_frequency, unstable_ranges
+from proprotor.tables.sweep_summary import UnstableRange, damped_frequency, growth_rate, unstable_ranges
 from proprotor.typing import Array, Dataset
 from proprotor.units import KNOT, KTAS
 
@@ -43,14 +43,29 @@ class Told(NamedTuple):
 def told_by(sweep: Dataset, line: Positions, rotor_speed: ArrayLike | None = None) -> Told:
     """Return what a sweep tells; with a rotor speed, rad/s, frequencies per revolution too."""
     ranges = _ranges(sweep)
+    unstable = {
+        mode: " and ".join(_words([one], sweep, line) for one in ranges if one.mode == mode)
+        for mode in dict.fromkeys(one.mode for one in ranges)
+    }
     return Told(
-        {
-            mode: "unstable " + " and ".join(_words([one], sweep, line) for one in ranges if one.mode == mode)
-            for mode in dict.fromkeys(one.mode for one in ranges)
-        },
+        {mode: f"unstable {where}" for mode, where in (_by_name(sweep, line) | unstable).items()},
         _headline(ranges, sweep, line, rotor_speed),
         _short(ranges, sweep, line),
     )
+
+
+def _by_name(sweep: Dataset, line: Positions) -> dict[str, str]:
+    """Return where each name is an unstable root's, point by point: a name may come to one that is already unstable."""
+    unstable = growth_rate(sweep) > 0
+    along = sweep[line.name].values
+    found = {}
+    for mode, own in zip(sweep.mode.values.tolist(), unstable.T, strict=True):
+        if own.any():
+            ends = dict.fromkeys(
+                _number(place, sweep, line) for place in (along[own].min(), along[own].max())
+            )
+            found[mode] = " to ".join(ends) if len(ends) > 1 else f"at {next(iter(ends))}"
+    return found
 
 
 def boundaries_of(sweep: Dataset, values: Array) -> list[_Boundary]:

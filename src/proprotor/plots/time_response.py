@@ -19,7 +19,8 @@ def _largest(values: Array, gradients: Array, unit: str) -> str:
     """Return the largest of responses (gradients, times, outputs), and the gust that has it."""
     peaks = np.nan_to_num(np.abs(values)).max(axis=(1, 2))
     place = int(peaks.argmax())
-    return f"largest: {peaks[place]:.3g} {written(unit)}, in the gust with H = {gradients[place]:.3g} m"
+    largest = f"{float(f'{peaks[place]:.3g}'):,g}"  # without an exponent
+    return f"largest: {largest} {written(unit)}, in the gust with H = {gradients[place]:.3g} m"
 
 
 @in_style
