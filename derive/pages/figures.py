@@ -398,19 +398,14 @@ def damping_against_flap_hub_inertia() -> Figure:
         ax.axvline(consistent, color=BLUE, linestyle=":")
         ax.axvline(values["I_βα"], color=GREEN, linestyle="-.")
     names = (
-        (bound, r"$\sqrt{I_b I_β}$", RED, "left"),
-        (consistent, f"one blade, {consistent:.1f}", BLUE, "right"),
-        (values["I_βα"], f"printed, {values['I_βα']:g}", GREEN, "right"),
+        (bound, r"$\sqrt{I_b I_β}$", RED),
+        (consistent, f"one blade, {consistent:.1f}", BLUE),
+        (values["I_βα"], f"printed, {values['I_βα']:g}", GREEN),
     )
-    for place, name, colour, side in names:  # beside their lines, which a legend would cover
-        offset: dict[str, Any] = {"textcoords": "offset points", "xytext": (3 if side == "left" else -3, 4)}
-        at: dict[str, Any] = {
-            "xycoords": axes[0].get_xaxis_transform(),
-            "ha": side,
-            "va": "bottom",
-            "color": colour,
-        }
-        axes[0].annotate(name, (place, 0), fontsize=LABEL_SIZE, **offset, **at)
+    for place, name, colour in names:  # beside their lines, which a legend would cover
+        style: dict[str, Any] = {"rotation": 90, "ha": "right", "va": "bottom", "color": colour}
+        at: dict[str, Any] = {"xycoords": axes[0].get_xaxis_transform(), "textcoords": "offset points"}
+        axes[0].annotate(name, (place, 0.3), xytext=(-3, 0), fontsize=LABEL_SIZE, **at, **style)
     x = "$I_{βα}$ (slug ft²)"
     _titled(axes[0], "Mass matrix scaled to unit diagonal", x, "Least eigenvalue")
     _titled(axes[1], "Least damped mode at 250 kt", x, "Damping (% of critical)")

@@ -69,7 +69,7 @@ from proprotor.rotor.airfoil_regions import AirfoilRegions
 from proprotor.rotor.airfoil_table import AirfoilTable
 from proprotor.rotor.atmosphere import Air, standard_air
 from proprotor.rotor.blade_frequencies import BladeFrequencies
-from proprotor.rotor.blade_stations import BladeStations
+from proprotor.rotor.blade_stations import FEWEST_STATIONS, BladeStations
 from proprotor.rotor.c81_writer import write_c81
 from proprotor.rotor.drive_train import DriveTrain
 from proprotor.rotor.in_flight import InFlight, find_in_flight, rotors_of, serves_in_flight
@@ -81,6 +81,7 @@ from proprotor.rotor.trim import UNKNOWNS, Target, Trim, has_offset_mass, take, 
 from proprotor.rotor.trim_solver import Settled, balance_of, settle_trim, solve_trim
 
 __all__ = [
+    "FEWEST_STATIONS",
     "HELD",
     "MASS_INTEGRALS",
     "NOTHING",
