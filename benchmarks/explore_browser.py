@@ -28,11 +28,11 @@ from selenium import webdriver
 from tests.browser.chromium import chromium
 from tests.explore_server import serving
 
-_BATCH = 50  # moves of one call of the browser
-_ROW = 250  # moves between two rows that are printed
+_BATCH = 1000  # moves of one call of the browser
+_ROW = 1000  # moves between two rows that are printed
+_FIRST = 50  # moves before anything is measured
 _DIGITS = (1, 0, 0, 1, 0, 0, 1)  # of the columns of a row
-# The page keeps this function: the browser keeps the text of each script that is sent to it, which would count as the
-# page's own memory.
+# Of each call the page keeps 16 kB, the text of a script of the driver: so one call makes many moves.
 _MOVES = """
 window.moveSliders = (seed, moves, done) => {
 const LONGEST = 10000;
@@ -194,7 +194,7 @@ def main() -> None:
         server = next(one for one in psutil.Process().children() if "explore" in one.cmdline())
         drivers = [opened(address) for _ in range(chosen.clients)]
         browsers = [psutil.Process(driver.service.process.pid) for driver in drivers]
-        all_moved(drivers, _BATCH, 7)
+        all_moved(drivers, _FIRST, 7)
         print(f"{chosen.case}, {chosen.backend}, {chosen.clients} clients, load {psutil.getloadavg()[0]:.1f}")
         start, started = spent_by(server), sum(map(spent_by, browsers))
         styles = metric(drivers[0], "RecalcStyleCount")
