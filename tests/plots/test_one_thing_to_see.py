@@ -150,6 +150,11 @@ def test_two_sweeps_are_told_side_by_side_and_each_origin_once(sweep, plot):
     assert told.count("Case xv15") == told.count("”: Case xv15") == 2
 
 
+def test_sweeps_of_one_origin_have_it_told_with_each_name(sweep):
+    told = small_print.read(plots.plot_damping(sweep, plots.plot_damping(sweep)))
+    assert told.count("Case xv15") == told.count("”: Case xv15") == 2
+
+
 @pytest.mark.parametrize("plot", DRAWN)
 def test_a_title_of_the_user_takes_the_place_of_the_headline_and_stays(sweep, plot):
     ax = plot(sweep)
@@ -198,6 +203,22 @@ def test_the_shaded_side_of_boundaries_is_unstable(against):
     assert inside[True] > 6 and inside[False] > 4
     names = {text.get_text() for text in ax.texts}
     assert {"stable", "unstable"} <= names
+
+
+def test_an_instability_of_flight_is_neither_the_lowest_boundary_nor_shaded(against):
+    place = int(np.nanargmin(np.nanmin(np.where(against.onset, against.airspeed, np.nan), axis=0)))
+    flight = against.copy(deep=True)
+    flight["kind"] = against.kind.astype(object)
+    flight["kind"][:, place] = "rigid body"
+    ax, before = plots.plot_boundary_against(flight), plots.plot_boundary_against(against)
+    lowest = float(against.airspeed.isel(branch=place).min()) / KNOT
+    assert f"at {lowest:.0f}" in before.get_title() and f"at {lowest:.0f}" not in ax.get_title()
+    grounds = [
+        min(path.vertices[:, 1].min() for patch in one.collections for path in patch.get_paths())
+        for one in (before, ax)
+    ]
+    assert grounds[0] == pytest.approx(lowest) and grounds[1] > lowest + 1
+    assert "nothing is shaded" in small_print.read(ax)
 
 
 def test_doubtful_boundaries_are_hollow(against):

@@ -143,17 +143,21 @@ def _draw(ax: Axes, found: Dataset, line: Positions, speeds: Array) -> list[Line
 def _shade(ax: Axes, found: Dataset, line: Positions, speeds: Array, top: Array) -> None:
     """Shade the airspeeds at which a mode is unstable: from its onset to its end, or as far as was analysed."""
     modes = np.array([_mode_of(label) for label in found.branch.values.tolist()])
-    onset = found.onset.values
-    for place in np.flatnonzero(onset):
-        ends = speeds[:, (modes == modes[place]) & ~onset]
-        later = np.where(ends > speeds[:, [place]], ends, np.inf)
+    onsets = _onsets(found, speeds)
+    for place in np.flatnonzero(np.isfinite(onsets).any(axis=0)):
+        own = np.where(np.isfinite(onsets[:, place]), onsets[:, place], np.nan)
+        ends = speeds[:, (modes == modes[place]) & ~found.onset.values]
+        later = np.where(ends > own[:, None], ends, np.inf)
         upper = np.fmin(later.min(axis=1, initial=np.inf), top)
-        ax.fill_between(line.values, speeds[:, place], upper, color=UNSTABLE, linewidth=0, zorder=0.5)
-    lowest = _onsets(found, speeds).min(axis=1, initial=np.inf)
+        ax.fill_between(line.values, own, upper, color=UNSTABLE, linewidth=0, zorder=0.5)
+    if (found.kind.values == RIGID_BODY).any():
+        note(ax, "Where the flight of the aircraft alone is unstable nothing is shaded")
+    lowest = onsets.min(axis=1, initial=np.inf)
     if (known := np.isfinite(lowest)).any():
-        above = np.fmin(ax.get_ylim()[1], np.nan_to_num(top, nan=np.inf)) - lowest
-        _name_side(ax, line, np.where(known, above, -np.inf), "unstable", 1)
-        _name_side(ax, line, np.where(known, lowest - ax.get_ylim()[0], -np.inf), "stable", 0)
+        low, high = ax.get_ylim()
+        highest = np.fmin(high, np.nan_to_num(top, nan=np.inf))
+        _name_side(ax, line, np.where(known, highest - lowest, -np.inf), "unstable", highest)
+        _name_side(ax, line, np.where(known, lowest - low, -np.inf), "stable", np.full(len(top), low))
 
 
 def _onsets(found: Dataset, speeds: Array) -> Array:
@@ -165,22 +169,16 @@ def _onsets(found: Dataset, speeds: Array) -> Array:
     return np.where(counted, speeds, np.inf)
 
 
-def _name_side(ax: Axes, line: Positions, room: Array, name: str, edge: int) -> None:
-    """Write the name of a side of the lowest boundary at an edge of the axes, 1 above, where the side has most room."""
+def _name_side(ax: Axes, line: Positions, room: Array, name: str, edge: Array) -> None:
+    """Write the name of a side of the lowest boundary at the edge of this side, where the side has most room."""
     place = int(room.argmax())
-    across = float(ax.transLimits.transform((line.values[place], 0))[0])
+    across, up = ax.transLimits.transform((line.values[place], edge[place]))
+    is_above = up > 0
     style: dict[str, Any] = {"ha": "left" if across < 0.2 else "right" if across > 0.8 else "center"}
-    style |= {"va": "top" if edge else "bottom", "style": "italic", "color": "0.3", "fontsize": TITLE_SIZE}
-    ax.annotate(
-        name,
-        (np.clip(across, 0.02, 0.98), edge),
-        xycoords="axes fraction",
-        xytext=(0, -6 if edge else 6),
-        textcoords="offset points",
-        path_effects=halo(),
-        zorder=4,
-        **style,
-    )
+    style |= {"va": "top" if is_above else "bottom", "xytext": (0, -6 if is_above else 6)}
+    style |= {"style": "italic", "color": "0.3", "fontsize": TITLE_SIZE, "path_effects": halo(), "zorder": 4}
+    at = (float(np.clip(across, 0.02, 0.98)), float(up))
+    ax.annotate(name, at, xycoords="axes fraction", textcoords="offset points", **style)
 
 
 def _lowest(found: Dataset, line: Positions, speeds: Array, unit: str) -> str:

@@ -59,9 +59,8 @@ def plot_envelope(found: Dataset, ax: Axes | None = None, *, unit: str = "ft") -
     names = found.condition.values.tolist()
     styles = zip(names, cycle(_MARKERS), cycle(_DASHES), strict=False)
     for place, (name, marker, dashes) in enumerate(styles):
-        under = 1 - place / max(
-            len(names) - 1, 1
-        )  # a line that others cover is broader, so that its edges are seen
+        # A line that others cover is broader, so that its edges are seen.
+        under = 1 - place / max(len(names) - 1, 1)
         speed, doubtful = (part[place] for part in lowest)
         if not np.isfinite(speed).any():
             none.append(name)
@@ -104,11 +103,8 @@ def _worst(found: Dataset, factor: float, unit: str) -> str:
     where = f"{here.condition.item()}, {float(here.altitude) / factor:,.0f} {unit}"
     margin, verdict = float(here.margin), str(here.verdict.item())
     if not np.isfinite([margin, float(here.equivalent_onset)]).all():
-        return (
-            f"{verdict}: {here.why.item()} ({where})"
-            if here.why.item()
-            else f"{verdict}: no onset in the search"
-        )
+        why = f"{here.why.item()} ({where})" if here.why.item() else "no onset in the search"
+        return f"{verdict}: {why}"
     onset = marked(f"{float(here.equivalent_onset) / KNOT:.0f}", here.warning.item())
     return f"{verdict}, least margin {_signed(100 * margin)} %: {here['mode'].item()} at {onset} {KEAS} ({where})"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -99,11 +100,9 @@ def named(ax: Axes, sweep: Dataset, lines: dict[str, Line2D], name: str, told: T
             line.set_label(f"{mode}, {own}")
         if own in (of := stamp.line(one.stamp)):
             continue
-        if f"“{own}”: {of}" not in small_print.read(ax):
-            small_print.replace(
-                ax, of, ""
-            )  # it stands there for the whole plot, which holds another sweep now
-            note(ax, f"“{own}”: {of}")
+        # A bare origin stands there for the whole plot, which holds another sweep now.
+        small_print.rewrite(ax, re.sub(rf"(?<!”: ){re.escape(of)}", "", small_print.read(ax)))
+        note(ax, f"“{own}”: {of}")
     if len(every) <= _MOST:
         return every
     broad = _broad_lines(kept)

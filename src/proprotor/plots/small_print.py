@@ -43,12 +43,10 @@ def add(ax: Axes, *sentences: str, first: bool = False) -> None:
     _write(ax, figure, " ".join(filter(None, (new, read(ax)) if first else (read(ax), new))))
 
 
-def replace(ax: Axes, old: str, new: str) -> None:
-    """Replace a sentence of the block of the axes."""
-    text = read(ax)
-    figure = ax.get_figure(root=True)
-    if figure is not None and old in text:
-        _write(ax, figure, " ".join(text.replace(old, new).split()))
+def rewrite(ax: Axes, text: str) -> None:
+    """Write another text in place of the block of the axes."""
+    if (figure := ax.get_figure(root=True)) is not None and text != read(ax):
+        _write(ax, figure, " ".join(text.split()))
 
 
 def read(ax: Axes) -> str:
