@@ -26,6 +26,8 @@ _MARKS = {
     codecs.BOM_UTF16_LE: "utf-16-le",
     codecs.BOM_UTF16_BE: "utf-16-be",
 }
+# How files that a spreadsheet saves as its own begin, which people take for tables.
+_WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 _LONGEST_MARK = max(map(len, _MARKS))
 
 
@@ -47,7 +49,8 @@ def read_text(
     Raises
     ------
     InputError
-        When the file does not exist, cannot be read, is larger than allowed or is not text of its encoding.
+        When the file does not exist, cannot be read, is larger than allowed, is a workbook, or is not text of its
+        encoding.
     """
     content = None
     try:
@@ -58,6 +61,10 @@ def read_text(
         raise InputError(field, label, f"cannot be read ({error.strerror})") from None
     if content is None:
         raise InputError(field, label, "no such file")
+    if content.startswith(_WORKBOOKS):
+        raise InputError(
+            field, label, "must be text, and is a workbook or an archive; save a sheet as CSV in UTF-8"
+        )
     if len(content) > largest:
         raise InputError(field, label, f"must not be larger than {largest} bytes")
     mark, encoding = _encoding(content, encoding)
