@@ -29,7 +29,7 @@ ROOMS = (
 # The one import of a room further down, deferred: a model's method that gives its modes.
 EXCEPTION = ("model", "stability", "LinearModel.modes")
 MOST_MODULES = 6  # beside the rooms
-INTERFACE = ("__init__", "interface")  # the package's own two modules, which are no room
+INTERFACE = ("__init__", "__main__", "interface")  # the package's own modules, which are no room
 
 
 class Import(NamedTuple):

@@ -35,6 +35,7 @@ from derive.audit.printed import notation as n
 from derive.audit.printed.flap import nu_beta_squared, radius
 from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
+from proprotor.errors import InputError, check_known
 from proprotor.plots.style import in_style
 
 # From a notebook, and rewritten where a page is rendered into docs/notebooks.
@@ -342,8 +343,17 @@ def chain(
         What the chain gives for each part.
     derived : mapping, optional
         What the derivation has for each part.
+
+    Raises
+    ------
+    InputError
+        For a part that the derivation does not have, and when nothing was found to compare.
     """
     expected = derived_terms(name) if derived is None else {part: terms_of(e) for part, e in derived.items()}
+    if not found:
+        raise InputError("found", None, f"must give one of the parts {', '.join(expected)}")
+    for part in found:
+        check_known("found", part, expected, "part")
     verdicts = audit_chain(found, expected)
     other = [verdict for verdict in verdicts if verdict.verdict == CONTRADICTS]
     of = heading(name) if derived is None else str(name)

@@ -122,6 +122,10 @@ _UNIT_TOKEN = re.compile(
 _FACTOR = re.compile(
     r"(?P<number>[0-9][0-9.e]*)|(?P<name>[A-Za-z_][A-Za-z0-9_]*|%)(?:\s*(?:\*\*|\^)\s*(?P<power>-?[0-9]))?"
 )
+# Units that people write without a sign between, such as Nm.
+_RUN_TOGETHER = re.compile(r"(k?N|lbf?|kg|slug|ft|in)(m|cm|mm|ft|in|lbf?)")
+# How tables of reports write powers and degrees.
+_AS_WRITTEN = str.maketrans({"²": "**2", "³": "**3", "°": "deg"})
 _Unit = tuple[float, dict[str, int]] | None  # so many times a product of other units; None for a base unit
 
 
@@ -429,6 +433,7 @@ def _split(text: str | float) -> tuple[float, str]:
 def _parse_unit(text: object, unit: str) -> dict[str, int]:
     """Return the power of each name in a unit, or refuse a unit that is unknown or no product of names."""
     product = f"1{unit}" if unit.startswith("/") else unit  # "5.7/rad"
+    product = product.translate(_AS_WRITTEN)
     product = re.sub(r"(?<=[A-Za-z0-9])[-·](?=[A-Za-z])", "*", product)  # in-lbf, as reports write it
     if len(unit) > _LONGEST or _UNIT_TOKEN.sub("", product).strip() or not _is_product(product):
         raise InputError("", text, 'has a unit that cannot be read; write it as in "2700 in*lbf/deg"')
@@ -445,6 +450,8 @@ def _unknown_unit(name: str) -> str:
     """Return the rule that an unknown unit breaks."""
     if name.lower() in _INDICATED:
         return f"must be ktas or keas; {name} is none of the units here"
+    if together := _RUN_TOGETHER.fullmatch(name):
+        return f"has an unknown unit {name!r}; did you mean {together[1]}*{together[2]}?"
     return f"has an {unknown_name(name, _unit_names(), 'unit')}"
 
 

@@ -310,6 +310,27 @@ print([name for name in {slow} if name in sys.modules])
     assert done.stdout.splitlines()[-1] == "[]"
 
 
+def test_python_runs_the_package_as_the_command():
+    """On Windows the folder of scripts is often in no search path."""
+
+    def output(way, *words):
+        return subprocess.run([sys.executable, *way, *words], capture_output=True, text=True)
+
+    for words in (["--help"], ["cases"], ["sweep", "xv15"]):
+        module, script = (
+            output(way, *words)
+            for way in (
+                ["-m", "proprotor"],
+                ["-c", "from proprotor.commands.main import main; main(prog_name='proprotor')"],
+            )
+        )
+        assert (module.returncode, module.stdout, module.stderr) == (
+            script.returncode,
+            script.stdout,
+            script.stderr,
+        )
+
+
 def test_a_reader_that_leaves_early_is_no_error():
     command = f"{sys.executable} -c 'from proprotor.commands.main import main; main()'"
     script = f"{command} sweep xv15-uncoupled --speed 50:400:1kt | head -1"

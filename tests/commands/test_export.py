@@ -1,5 +1,7 @@
 """The command export: the files that the functions write."""
 
+import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +21,8 @@ def empty_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def run(*arguments):
-    return CliRunner().invoke(main, ["export", "xv15-uncoupled", *arguments, "--speed", "200 kt"])
+def run(*arguments, speed="200 kt"):
+    return CliRunner().invoke(main, ["export", "xv15-uncoupled", *arguments, "--speed", speed])
 
 
 def test_direct_matrix_input_is_that_of_the_function():
@@ -54,3 +56,24 @@ def test_what_cannot_be_written_is_one_message(arguments, message):
     assert result.exit_code != 0 and isinstance(result.exception, SystemExit)
     assert message in result.stderr and len(result.stderr.strip().splitlines()) == 1
     assert not list(Path().iterdir())
+
+
+@pytest.mark.parametrize("arguments", [("a.bdf", *POINTS), ("a.mat",), ("a.mat", "--json")])
+def test_an_airspeed_that_cannot_be_analysed_leaves_no_file(arguments):
+    """A file of matrices without a number looks like a result."""
+    result = run(*arguments, speed="3700 kt")
+    assert result.exit_code == 2 and not result.stdout
+    assert result.stderr.startswith("Error: --speed = 3700 kt: tip Mach number")
+    assert not list(Path().iterdir())
+
+
+@pytest.mark.parametrize("name", ["rotor.bdf", "rotor.BDF", "wing.mat", "wing.MAT"])
+def test_the_coordinates_told_are_those_in_the_file(name):
+    told = json.loads(run(name, *(POINTS if name.startswith("rotor") else ()), "--json").stdout)[
+        "coordinates"
+    ]
+    if name.startswith("rotor"):
+        lines = re.findall(r"^\$ \d+(?: -?[TR]\d)?: (\w+)", Path(name).read_text(encoding="ascii"), re.M)
+        assert told == lines
+    else:
+        assert told == [str(cell[0][0]) for cell in loadmat(name, appendmat=False)["dofs"]]

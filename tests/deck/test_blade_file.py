@@ -59,6 +59,36 @@ def test_stations_as_parts_of_the_radius(tmp_path):
         read(tmp_path, text)
 
 
+@pytest.mark.parametrize("unit", ["lbf·in²", "lbf in²", "lbf*in²", "lbf-in^2", "in² lbf"])
+def test_units_as_reports_write_them(tmp_path, unit):
+    heads = HEADS.replace("lbf*in**2", unit).replace("twist [deg]", "twist [°]")
+    check(read(tmp_path, "\n".join((heads, *ROWS))))
+
+
+@pytest.mark.parametrize(
+    ("head", "last", "told"),
+    [
+        ("r [in]", "150", "is 0.984252 R"),  # beside another radius of the rotor
+        ("r [ft]", "150", "is 11.811 R"),  # in another unit than the head says
+        ("r/R", "150", "is 150 R"),  # lengths below the head of r/R
+        ("r/R", "120", "is 120 R"),
+        ("r_over_R [%]", "95", "is 0.95 R"),  # a table that ends before the tip
+    ],
+)
+def test_the_last_station_is_the_tip(tmp_path, head, last, told):
+    """Else the blade has another radius than the rotor, and nothing says so."""
+    text = "\n".join((HEADS.replace("r [in]", head), *ROWS)).replace("\n150,", f"\n{last},")
+    text = text.replace("100,0.17", "90,0.17")
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text, radius=3.87096)
+    column = f"line 5, column 1 ({head})"
+    assert f"{column}: {told}; the last station must be the tip, R = 3.87096 m" in str(caught.value)
+
+
+def test_a_radius_beside_stations_in_metres_may_be_rounded(tmp_path):
+    check(read(tmp_path, "\n".join((HEADS, *ROWS)), radius=3.8102))
+
+
 def test_a_table_that_begins_outboard_is_held_there(tmp_path):
     """A missing root is no blade of zeros."""
     assert read(tmp_path, "\n".join((HEADS, *ROWS))).nodes[0] == pytest.approx(15 * INCH)

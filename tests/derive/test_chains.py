@@ -7,6 +7,8 @@ import pytest
 
 from derive.audit.comparison import CONTRADICTS
 from derive.pages import notebooks
+from derive.pages.display import chain
+from proprotor.errors import InputError
 
 SOURCES = {source.stem: source for source in notebooks.sources()}
 CHAINS = {
@@ -54,9 +56,7 @@ def test_a_chain_is_short_and_finds_every_term_of_the_derivation(name):
         assert "those of the derivation: reproduced" in text and CONTRADICTS not in text
 
 
-EVERY_SIGN = [
-    (name, place) for name, chain in CHAINS.items() for place in range(len(signs(ast.parse(chain))))
-]
+EVERY_SIGN = [(name, place) for name, text in CHAINS.items() for place in range(len(signs(ast.parse(text))))]
 
 
 @pytest.mark.parametrize(("name", "place"), EVERY_SIGN)
@@ -74,3 +74,18 @@ def test_the_sign_of_the_first_erratum_is_told_where_it_stands():
     assert chain != CHAINS["2-inertia"] and f"**{CONTRADICTS}**" in text
     row = text.splitlines()[-1]
     assert r"\zeta'" in row and r"\beta''" not in row
+
+
+@pytest.mark.parametrize(
+    ("number", "found", "message"),
+    [
+        (36, {"K_PB": 0}, "unknown part 'K_PB'; did you mean K_Pβ?"),
+        (3, {"i": 0, "z": 0}, "found = z: unknown part 'z'; known: i, j, k"),
+        (3, {}, "found: must give one of the parts i, j, k"),
+    ],
+)
+def test_a_part_that_the_derivation_lacks_is_told(number, found, message):
+    """And nothing is no chain whose terms all agree."""
+    with pytest.raises(InputError) as caught:
+        chain(number, found)
+    assert message in str(caught.value)

@@ -131,7 +131,14 @@ def test_a_rotor_alone_and_other_axes(model, tmp_path):
     ("options", "message"),
     [
         ({"grid": 0}, "grid = 0: must be a number of a point"),
-        ({"first_extra_point": 99_999_999}, "grid = 1101: must be a number of a point"),
+        (
+            {"first_extra_point": 99_999_999},
+            "first_extra_point = 99999999: must be a number of a point, from 1 to",
+        ),
+        ({"grid": 1101.5}, "grid = 1101.5: must be a number of a point"),
+        ({"grid": "1101"}, "grid = 1101: must be a number of a point"),
+        ({"grid": True}, "grid = true: must be a number of a point"),
+        ({"first_extra_point": None}, "first_extra_point: must be a number of a point"),
         ({"first_extra_point": 1100}, "grid = 1101: must not be one of the extra points, 1100 to 1111"),
         ({"length_unit": 0.0}, "length_unit = 0.0: must be above zero"),
         ({"mass_unit": float("nan")}, "mass_unit = nan: must be finite"),

@@ -255,8 +255,8 @@ def test_markup_in_a_deck_is_text_everywhere(hostile, tmp_path):
 
 
 NO_TEXTS = {
-    "a spreadsheet or an archive": b"PK\x03\x04\x14\x00\x06\x00",
-    "an old spreadsheet or document": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+    "a workbook or an archive": b"PK\x03\x04\x14\x00\x06\x00",
+    "an old workbook or document": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
     "a file of HDF5": b"\x89HDF\r\n\x1a\n",
     "a file of MATLAB": b"MATLAB 5.0 MAT-file, Platform: GLNXA64",
 }

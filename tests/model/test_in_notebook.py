@@ -53,6 +53,44 @@ def test_the_plain_text_is_short(what):
     assert len(shown.splitlines()) < 16 and len(shown) < 2500
 
 
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ({"rotor.precone": [0.03, 0.05, 0.04]}, "3 designs: rotor.precone 0.03 to 0.05 rad"),
+        (
+            {"rotor.precone": [0.03, 0.04], "support.modes[beam].frequency": [[20.0], [25.0], [30.0]]},
+            "6 designs: rotor.precone 0.03 to 0.04 rad, support.modes[beam].frequency 20 to 30 rad/s",
+        ),
+        (
+            {"rotor.kinematic_pitch_flap_coupling": [0.1, 0.2]},
+            "2 designs: rotor.kinematic_pitch_flap_coupling 0.1",
+        ),
+        ({"rotor.precone": ["1 deg"]}, "1 design: rotor.precone 0.0174533 rad"),
+    ],
+)
+def test_a_case_of_many_designs_says_so(values, told):
+    """Without that line it reads as the design of its deck."""
+    many = CASE.vary(values)
+    for shown in (repr(many), text_of(many)):
+        assert told in shown
+
+
+@pytest.mark.parametrize("name", [*pp.list_cases()])
+def test_a_case_of_one_design_names_no_range(name):
+    case = pp.load_case(name)
+    assert "design" not in repr(case).replace(case.title, "").partition("Rests on")[0]
+    assert "designs:" not in repr(case.vary({"rotor.precone": 0.04}))
+
+
+def test_a_state_space_shows_its_names_and_no_matrices():
+    one, many = CASE.linearize(100.0).to_state_space(), CASE.linearize([100.0, 900.0]).to_state_space()
+    for shown in map(repr, (one, many)):
+        assert len(shown.splitlines()) < 6 and "array" not in shown
+        assert "6 inputs: collective, cyclic_1c, cyclic_1s, gust_x" in shown and " outputs: x, y, z," in shown
+    assert "StateSpace: " in repr(one) and f"{len(one.states)} states, one point" in repr(one)
+    assert "batch of shape (2,)" in repr(many) and "1 of 2 failed" in repr(many)
+
+
 def test_text_of_a_deck_is_escaped():
     named = replace(CASE, title='<script>alert("x")</script> & more', remarks=("<b>bold</b>",))
     html = named._repr_html_()

@@ -179,6 +179,19 @@ def test_what_the_numbers_rest_on_stands_on_its_face(page, case):
     assert case.warnings[0] in front
 
 
+@pytest.mark.parametrize("speeds", ["340:400:20kt", "180:200:10m/s", "350:400:25keas", "400:450:25mph"])
+def test_pictures_are_described_in_the_unit_of_the_page(tmp_path, speeds):
+    """A reader who hears the page meets one unit of airspeed."""
+    out = tmp_path / "x.html"
+    assert run("xv15-uncoupled", "--speed", speeds, "--out", out).exit_code == 0
+    page = Page(out.read_text(encoding="utf-8"))
+    low, high, unit = re.search(r"zero damping between (\S+) and (\S+) (\S+),", page.text).groups()
+    lines = [picture["alt"] for picture in page.pictures if " of the modes " in picture["alt"]]
+    assert len(lines) == 3
+    for told in lines:
+        assert f"from {low} to {high} {unit}; " in told
+
+
 def test_the_page_needs_nothing_else_and_tells_what_it_shows(written, page):
     text = written[0].read_text(encoding="utf-8")
     assert not {"script", "link", "iframe"} & set(page.tags)

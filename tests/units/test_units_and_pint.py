@@ -99,6 +99,44 @@ def test_what_is_no_product_is_refused(written):
         factor_to_si(written, written, "m")
 
 
+@pytest.mark.parametrize(
+    ("written", "plain"),
+    [
+        ("N m²", "N*m**2"),
+        ("lbf·in²", "lbf*in**2"),
+        ("kg/m³", "kg/m**3"),
+        ("in·lbf/°", "in*lbf/deg"),
+        ("°", "deg"),
+    ],
+)
+def test_powers_and_degrees_as_reports_write_them(written, plain):
+    for unit in SI:
+        assert by_proprotor(written, unit) == by_proprotor(plain, unit)
+    assert any(by_proprotor(written, unit) for unit in SI)
+
+
+@pytest.mark.parametrize("written", ["²", "m²²", "m²3", "2²", "²m", "m**²"])
+def test_a_power_of_nothing_is_refused(written):
+    with pytest.raises(InputError, match="cannot be read"):
+        factor_to_si(written, written, "m")
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("Nm", "N*m"),
+        ("kNm²", "kN*m"),
+        ("Nm^2", "N*m"),
+        ("inlbf/deg", "in*lbf"),
+        ("ftlb", "ft*lb"),
+        ("kgm", "kg*m"),
+    ],
+)
+def test_units_without_a_sign_between_are_told_with_it(written, meant):
+    with pytest.raises(InputError, match=rf"unknown unit '\w+'; did you mean {re.escape(meant)}\?$"):
+        factor_to_si(written, written, "m")
+
+
 def test_text_is_read_without_pint():
     code = (
         "import sys; from proprotor.units import to_si; to_si('12.5 ft', 'm'); print('pint' in sys.modules)"

@@ -51,7 +51,11 @@ _FAN = (0.0, 1.3)  # rotor speeds of the plot, of that of the fit
     metavar="RADIUS",
     help="Radius of the pitch bearing; inboard of it nothing turns with the pitch.",
 )
-@click.option("--radius", metavar="RADIUS", help="Radius of the rotor, if the stations are r/R.")
+@click.option(
+    "--radius",
+    metavar="RADIUS",
+    help="Radius of the rotor, at the last station; needed where the stations are r/R.",
+)
 @click.option("--deck", metavar="FILE", help="Write the [rotor] fields that were found, as lines for a deck.")
 @output.output_options(
     csv="Write a row for each compared quantity and collective.",

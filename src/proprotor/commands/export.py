@@ -67,21 +67,28 @@ def export(
     airspeed = arguments.one_speed(speed, case)
     with waiting("Computing"):
         model = case.linearize(airspeed, **request.options)
+    if reason := str(model.trim.reason):  # matrices without a single number
+        raise InputError("--speed", speed, reason)
     write(model)
     click.echo(f"Wrote {file}", err=True)
     if as_json:
-        rotor = model.rotor if Path(file).suffix == _NASTRAN and model.rotor else model
+        rotor = model.rotor if _ending(file) == _NASTRAN and model.rotor else model
         output.print_json(
             output.about(case, request)
             | {"written": file, "airspeed (m/s)": airspeed, "coordinates": list(rotor.dofs)}
         )
 
 
+def _ending(file: str) -> str:
+    """Return the ending of the file's name, which says the kind of the file, in small letters."""
+    return Path(file).suffix.lower()
+
+
 def _writer(
     file: str, grid: int | None, first_extra_point: int | None, length_unit: str, mass_unit: str
 ) -> Callable[[LinearModel], None]:
     """Return the function that writes a model to a file of its kind, or refuse a file of no kind."""
-    ending = Path(file).suffix.lower()
+    ending = _ending(file)
     given = {"--grid": grid, "--first-extra-point": first_extra_point}
     if ending == _MATLAB:
         for name, value in given.items():

@@ -8,13 +8,23 @@ from pathlib import Path
 from typing import Any
 
 from proprotor.errors import InputError
-from proprotor.files.csv_columns import Fault, Head, Line, factor_of, fault_at, number_in, table_of
+from proprotor.files.csv_columns import (
+    Fault,
+    Head,
+    Line,
+    check_order,
+    factor_of,
+    fault_at,
+    number_in,
+    table_of,
+)
 from proprotor.files.text import read_text
 from proprotor.rotor.blade_stations import FEWEST_STATIONS, BladeStations
 from proprotor.typing import Array
 
 _LARGEST = 1_000_000  # bytes
 _MOST_STATIONS = 10_000
+_ROUNDING = 1e-3  # of the radius, by which the last station may miss the tip
 # Columns by their names in files, with the SI unit and the sign of their values.
 _COLUMNS = {
     "radius": ("m", "not negative", ("r", "r_over_R", "radius", "station", "x", "x/R", "r/R")),
@@ -62,7 +72,7 @@ def read_blade(path: str | os.PathLike[str], *, radius: float | None = None, **h
     ----------
     path : str or path
     radius : float, optional
-        m; needed where the stations are r/R.
+        Radius of the rotor, m, at which the last station must be; needed where the stations are r/R.
     **held
         Fields of `BladeStations` that no column has: `pitch_bearing` and `control_stiffness`.
 
@@ -79,7 +89,7 @@ def read_blade(path: str | os.PathLike[str], *, radius: float | None = None, **h
     try:
         heads, rows = table_of(read_text(Path(path), "file", name, _LARGEST))
         own = _own_columns(heads)
-        columns: dict[str, Any] = _from_pitch_axis(_columns(own, rows, _scales(own, radius)))
+        columns: dict[str, Any] = _from_pitch_axis(_columns(own, rows, _scales(own, radius), radius))
     except Fault as fault:
         raise InputError("file", name, str(fault)) from None
     return BladeStations(**columns, **held)
@@ -111,8 +121,10 @@ def _scales(own: dict[str, Head], radius: float | None) -> dict[str, float]:
     return found | {"radius": factor_of(head, "") * radius}
 
 
-def _columns(own: dict[str, Head], rows: Iterator[Line], scales: dict[str, float]) -> dict[str, Array]:
-    """Return the columns in SI; refuse a value that breaks its rule, and stations that do not increase."""
+def _columns(
+    own: dict[str, Head], rows: Iterator[Line], scales: dict[str, float], radius: float | None
+) -> dict[str, Array]:
+    """Return the columns in SI; refuse a value that breaks its rule, stations that do not increase or miss the tip."""
     import numpy as np
 
     found: dict[str, list[float]] = {field: [] for field in own}
@@ -121,11 +133,14 @@ def _columns(own: dict[str, Head], rows: Iterator[Line], scales: dict[str, float
             value = number_in(number, cells, head) * scales[field]
             _check(number, head, _COLUMNS[field][1], value)
             found[field].append(value)
-        _check_order(number, own["radius"], found["radius"])
+        if len(found["radius"]) > 1:
+            check_order(number, own["radius"], *found["radius"][:-3:-1])
         if len(found["radius"]) > _MOST_STATIONS:
             raise Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
     if len(found["radius"]) < FEWEST_STATIONS:
         raise Fault(f"must have at least {FEWEST_STATIONS} stations, and has {len(found['radius'])}")
+    if found["radius"] and radius is not None:
+        _check_tip(number, own["radius"], found["radius"][-1], radius)
     return {field: np.array(values) for field, values in found.items()}
 
 
@@ -146,11 +161,8 @@ def _check(number: int, head: Head, sign: str, value: float) -> None:
         raise fault_at(number, head, f"must be {sign}" if sign == "above zero" else "must not be negative")
 
 
-def _check_order(number: int, head: Head, radii: list[float]) -> None:
-    """Refuse a station that is not outboard of the one before."""
-    if len(radii) < 2 or radii[-1] > radii[-2]:
-        return
-    rule = "must increase from line to line"
-    if radii[-1] == radii[-2]:
-        rule = "is the station of the line before; set the two sides of a step a little apart"
-    raise fault_at(number, head, rule)
+def _check_tip(number: int, head: Head, tip: float, radius: float) -> None:
+    """Refuse a last station that is not at the radius of the rotor, as that of r in a column for r/R."""
+    if abs(tip - radius) > _ROUNDING * radius:
+        rule = f"is {tip / radius:.6g} R; the last station must be the tip, R = {radius:.6g} m"
+        raise fault_at(number, head, rule)

@@ -20,7 +20,17 @@ from typing import NamedTuple
 
 from proprotor.deck.reading import ANY, Bound
 from proprotor.errors import InputError
-from proprotor.files.csv_columns import Fault, Head, Line, factor_of, fault_at, head_of, number_in, table_of
+from proprotor.files.csv_columns import (
+    Fault,
+    Head,
+    Line,
+    check_order,
+    factor_of,
+    fault_at,
+    head_of,
+    number_in,
+    table_of,
+)
 from proprotor.files.text import read_text
 
 _STATIONS = ("r_over_R", "r")
@@ -102,8 +112,8 @@ def _distribution(
     found: list[float] = []
     for number, cells in rows:
         r = _on_the_blade(number, stations, number_in(number, cells, stations) * scale)
-        if r_over_R and r <= r_over_R[-1]:
-            raise fault_at(number, stations, "must increase from line to line")
+        if r_over_R:
+            check_order(number, stations, r, r_over_R[-1])
         value = number_in(number, cells, values) * to_si
         if not math.isfinite(value):
             raise fault_at(number, values, "must be finite")

@@ -94,10 +94,14 @@ def _check(rotor: LinearModel, grid: int, first_extra_point: int) -> None:
         raise InputError("model", f"{rotor.M.shape[:-2]} points", "must be at one airspeed")
     if reason := str(rotor.trim.reason):
         raise InputError("airspeed", f"{float(rotor.airspeed):.6g} m/s", reason)
-    last = first_extra_point + len(rotor.dofs) - len(HUB) - 1
-    for name, point in (("grid", grid), ("first_extra_point", first_extra_point)):
-        if not 1 <= point <= _LARGEST_POINT or last > _LARGEST_POINT:
-            raise InputError(name, point, f"must be a number of a point, from 1 to {_LARGEST_POINT}")
+    count = len(rotor.dofs) - len(HUB)
+    for name, point, largest in (
+        ("grid", grid, _LARGEST_POINT),
+        ("first_extra_point", first_extra_point, _LARGEST_POINT - count + 1),  # others follow
+    ):
+        if type(point) is bool or not isinstance(point, int | np.integer) or not 1 <= point <= largest:
+            raise InputError(name, point, f"must be a number of a point, from 1 to {largest}")
+    last = first_extra_point + count - 1
     if first_extra_point <= grid <= last:
         raise InputError("grid", grid, f"must not be one of the extra points, {first_extra_point} to {last}")
 

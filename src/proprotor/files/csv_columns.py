@@ -4,8 +4,9 @@
 
     r [ft], twist [deg], chord [inch]
 
-Commas, semicolons or tabs separate the columns; a unit stands in brackets or parentheses. Numbers have a decimal point,
-or, between semicolons or tabs, all of them a decimal comma. Empty lines and lines that begin with ``#`` are ignored.
+Commas, semicolons or tabs separate the columns, and Excel's line ``sep=;`` may say which; a unit stands in brackets or
+parentheses, where a dash stands for no unit. Numbers have a decimal point, or, between semicolons or tabs, all of them
+a decimal comma. Empty lines and lines that begin with ``#`` are ignored.
 Cells contain numbers or words only: no formula is evaluated.
 """
 
@@ -26,6 +27,8 @@ _HEAD = re.compile(r"\s*([^\[\]]*?)\s*(?:\[([^\[\]]*)\])?\s*")
 _IN_PARENTHESES = re.compile(r"\s*([^()\[\]]*?)\s*\(([^\[\]]*)\)\s*")
 _NUMBER = re.compile(r"\s*[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?\s*")
 _DELIMITERS = ",;\t"
+_SEPARATOR = re.compile(rf"sep=([{_DELIMITERS}])[{_DELIMITERS}]*\s*", re.IGNORECASE)
+_DASHES = ("-", "–", "—")  # in place of a unit
 _WITH_COMMA = re.compile(r"(?<![^;\t\s+-])\d+,\d+(?![^;\t\seE])")
 _WITH_POINT = re.compile(r"\d\.\d")
 
@@ -50,16 +53,27 @@ def table_of(text: str) -> tuple[list[Head], Iterator[Line]]:
         for number, line in enumerate(re.split("\r\n|\r|\n", text), start=1)
         if line.strip(f" {_DELIMITERS}") and not line.lstrip().startswith("#")
     ]
+    told = _SEPARATOR.fullmatch(lines[0][1]) if lines else None
+    if told:
+        del lines[0]
     if not lines:
         raise Fault("is empty; its first line must name the columns")
     number, first = lines[0]
-    delimiter = max(_DELIMITERS, key=first.count)
+    _check_no_title(lines)
+    delimiter = told[1] if told else max(_DELIMITERS, key=first.count)
     heads = [_as_head(number, place, text) for place, text in enumerate(_cells(number, first, delimiter))]
     names = [head.name for head in heads]
     for head in heads:
         if names.index(head.name) != head.place:
             raise Fault(f'line {number}, column {head.place + 1}: "{head.name}" is named twice')
     return heads, _rows(_with_points(lines[1:], delimiter), delimiter, len(heads))
+
+
+def _check_no_title(lines: list[tuple[int, str]]) -> None:
+    """Refuse a line of one cell above the line that names the columns, such as the title of a sheet."""
+    several = [any(one in line.strip(f" {_DELIMITERS}") for one in _DELIMITERS) for _, line in lines[:2]]
+    if several == [False, True]:
+        raise Fault(f'line {lines[0][0]}: must name the columns; a title is a line that begins with "#"')
 
 
 def _with_points(lines: list[tuple[int, str]], delimiter: str) -> list[tuple[int, str]]:
@@ -104,7 +118,8 @@ def _as_head(number: int, place: int, text: str) -> Head:
     match = _IN_PARENTHESES.fullmatch(text) or _HEAD.fullmatch(text)
     if match is None or not match[1]:
         raise Fault(f'line {number}, column {place + 1}: must be a name and a unit, such as "twist [deg]"')
-    return Head(place, text.strip(), match[1], (match[2] or "").strip())
+    unit = (match[2] or "").strip()
+    return Head(place, text.strip(), match[1], "" if unit in _DASHES else unit)
 
 
 def head_of(heads: list[Head], column: str) -> Head:
@@ -120,7 +135,8 @@ def factor_of(head: Head, unit: str) -> float:
     try:
         return factor_to_si(head.text, head.unit, unit)
     except InputError as error:
-        raise Fault(f"column {head.place + 1} ({head.text}): {error.rule}") from None
+        where = "" if head.unit else f'; write "{head.name} [unit]"'
+        raise Fault(f"column {head.place + 1} ({head.text}): {error.rule}{where}") from None
 
 
 def number_in(number: int, cells: list[str], head: Head) -> float:
@@ -135,6 +151,15 @@ def number_in(number: int, cells: list[str], head: Head) -> float:
     if not math.isfinite(found := float(text)):
         raise fault_at(number, head, "must be finite")
     return found
+
+
+def check_order(number: int, head: Head, place: float, before: float) -> None:
+    """Refuse a station that is not outboard of the station of the line before."""
+    if place == before:
+        rule = "is the station of the line before; set the two sides of a step a little apart"
+        raise fault_at(number, head, rule)
+    if place < before:
+        raise fault_at(number, head, "must increase from line to line")
 
 
 def fault_at(number: int, head: Head, rule: str) -> Fault:

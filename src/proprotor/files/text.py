@@ -28,8 +28,8 @@ _MARKS = {
 }
 # How files begin that are no text, and what they are.
 _NO_TEXTS = {
-    b"PK\x03\x04": "a spreadsheet or an archive: save its table as CSV, or unpack it",
-    b"\xd0\xcf\x11\xe0": "an old spreadsheet or document: save its table as CSV",
+    b"PK\x03\x04": "a workbook or an archive; save a sheet as CSV in UTF-8",
+    b"\xd0\xcf\x11\xe0": "an old workbook or document; save a sheet as CSV in UTF-8",
     b"\x89HDF": "a file of HDF5",
     b"MATLAB 5": "a file of MATLAB",
     b"\x93NUMPY": "an array of NumPy",
@@ -56,7 +56,8 @@ def read_text(
     Raises
     ------
     InputError
-        When the file does not exist, cannot be read, is larger than allowed or is not text of its encoding.
+        When the file does not exist, cannot be read, is larger than allowed, is a workbook, or is not text of its
+        encoding.
     """
     content = None
     try:
@@ -67,10 +68,10 @@ def read_text(
         raise InputError(field, label, f"cannot be read ({error.strerror})") from None
     if content is None:
         raise InputError(field, label, "no such file")
-    if len(content) > largest:
-        raise InputError(field, label, f"must not be larger than {largest} bytes")
     if what := next((what for start, what in _NO_TEXTS.items() if content.startswith(start)), ""):
         raise InputError(field, label, f"must be text, and is {what}")
+    if len(content) > largest:
+        raise InputError(field, label, f"must not be larger than {largest} bytes")
     mark, encoding = _encoding(content, encoding)
     try:
         return content[mark:].decode(encoding)

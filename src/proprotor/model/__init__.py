@@ -36,6 +36,7 @@ configuration, and the stamp that every result has.
     doubts               marks and reasons of doubtful numbers
     options_in_force     the options of a model as plain data and in words
     deck_fingerprint     a short text that identifies a deck
+    designs              how many designs a case stands for, and the inputs that vary
     stamp                the case, options and sources that a result carries
     html                 pieces of HTML for notebooks
     in_notebook          a case and a model as HTML

@@ -14,6 +14,7 @@ from proprotor.control.control_loop import ControlLoop, loop_text
 from proprotor.datum import Datum
 from proprotor.errors import InputError
 from proprotor.model.closed_loop import close_loops
+from proprotor.model.designs import designs
 from proprotor.model.floquet import checked
 from proprotor.model.linear_model import LinearModel, range_text
 from proprotor.model.mount import mount
@@ -102,6 +103,7 @@ class Configuration:
             f"  {rotors}: {rotor.n_blades} blades, radius {radius} m, {range_text(speed)} rpm",
             f"  support: {', '.join(self.support.names) or 'a rigid hub'}{_held(self.support)}",
         ]
+        lines += [f"  {found}"] if (found := designs(self)) else []
         lines += [f"  control loop {loop_text(loop)}" for loop in self.loops]
         return "\n".join(lines + [f"  {sentence}" for sentence in reservations(self)])
 

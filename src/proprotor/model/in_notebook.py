@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from proprotor.model import html, stamp
+from proprotor.model.designs import designs
 from proprotor.model.doubts import marked, reasons_for_doubt
 from proprotor.model.provenance import doubtful_inputs, reservations
 from proprotor.support.airframe import Airframe
@@ -39,6 +40,7 @@ def case_html(case: Configuration) -> str:
     return html.block(
         title,
         html.table(("", ""), rows),
+        html.lines(filter(None, [designs(case)])),
         html.lines(reservations(case)),
         remarks if case.warnings else "",
         html.inputs_not_read(doubtful_inputs(case)),

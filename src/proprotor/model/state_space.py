@@ -80,6 +80,18 @@ class StateSpace:
     reason: Array
     stamp: Stamp = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        """Return how many states, inputs and outputs there are, their names, and the failed points, in a few lines."""
+        points = f"batch of shape {self.A.shape[:-2]}" if self.A.ndim > 2 else "one point"
+        lines = [f"StateSpace: {len(self.states)} states, {points}"]
+        for name in ("inputs", "outputs"):
+            names = getattr(self, name)
+            lines.append(f"  {len(names)} {name}: {', '.join(names)}")
+        for told, texts in (("failed", self.reason), ("doubtful", self.warning)):
+            if count := np.count_nonzero(np.asarray(texts, dtype=str)):
+                lines.append(f"  {count} of {np.size(texts)} {told}")
+        return "\n".join(lines)
+
     def to_control(self) -> control.StateSpace:
         """Return one point as a `control.StateSpace` of python-control.
 

@@ -105,7 +105,8 @@ def report_document(
         Section("Modes", tuple(_modes(table))),
         Section("Trim", tuple(_trim(found, table))),
         Section(
-            "Frequency and damping", tuple(pictures.of_sweep(case, found, unit, points) if found.mode else ())
+            "Frequency and damping",
+            tuple(pictures.of_sweep(case, found, unit, factor, points) if found.mode else ()),
         ),
         Section(f"Causes {_where(found, unit, factor)}".strip(), tuple(_causes(found, unit, factor))),
         Section("Sensitivities", tuple(_sensitivities(case, found, unit, factor))),

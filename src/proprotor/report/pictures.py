@@ -46,14 +46,16 @@ def _drawing(plot: Callable[[], Axes]) -> Callable[[str], bytes]:
     return draw
 
 
-def of_sweep(case: Case, found: Findings, unit: str, points: Points | None = None) -> Iterator[Picture]:
+def of_sweep(
+    case: Case, found: Findings, unit: str, factor: float, points: Points | None = None
+) -> Iterator[Picture]:
     """Yield the plots of frequency and damping, with points of a file that has their columns, and the root locus."""
     of_frequency, of_damping = (
         points if points and name in points.columns else None for name in (FREQUENCY, DAMPING)
     )
     omega = float(case.operation.rotor_speed)
-    low, high = (f"{speed:.4g} m/s" for speed in found.flutter.searched)
-    across = f"from {low} to {high}; the tables of modes have the numbers."
+    low, high = (f"{speed / factor:.4g}" for speed in found.flutter.searched)
+    across = f"from {low} to {high} {unit}; the tables of modes have the numbers."
     names = ", ".join(map(str, found.sweep.mode.values))
     broad = "Broad lines with markers: modes of the support, and modes that become unstable."
     yield Picture(
