@@ -113,7 +113,10 @@ HEAD = "r_over_R,twist [deg]\n"
             b"PK\x03\x04" + b"\x14" * 2_000_000,
             "must be text, and is a workbook or an archive; save a sheet as CSV",
         ),
-        (b"\xd0\xcf\x11\xe0\xa1\xb1", "must be text, and is an old workbook or document; save a sheet as CSV"),
+        (
+            b"\xd0\xcf\x11\xe0\xa1\xb1",
+            "must be text, and is an old workbook or document; save a sheet as CSV",
+        ),
         (b"\x00" * 2_000_000, "must not be larger than 1000000 bytes"),
         (HEAD + "".join(f"{k / 20000},1\n" for k in range(20000)), "must have at most 10000 stations"),
     ],
