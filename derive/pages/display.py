@@ -35,7 +35,6 @@ from derive.audit.printed import notation as n
 from derive.audit.printed.flap import nu_beta_squared, radius
 from derive.published import DROPPED_TERMS
 from derive.symbols import QUANTITIES
-from proprotor.errors import InputError, check_known
 from proprotor.plots.style import in_style
 
 # From a notebook, and rewritten where a page is rendered into docs/notebooks.
@@ -346,14 +345,15 @@ def chain(
 
     Raises
     ------
-    InputError
+    ValueError
         For a part that the derivation does not have, and when nothing was found to compare.
     """
     expected = derived_terms(name) if derived is None else {part: terms_of(e) for part, e in derived.items()}
     if not found:
-        raise InputError("found", None, f"must give one of the parts {', '.join(expected)}")
+        raise ValueError(f"found: must give one of the parts {', '.join(expected)}")
     for part in found:
-        check_known("found", part, expected, "part")
+        if part not in expected:
+            raise ValueError(f"found = {part}: is no part of this equation, which has {', '.join(expected)}")
     verdicts = audit_chain(found, expected)
     other = [verdict for verdict in verdicts if verdict.verdict == CONTRADICTS]
     of = heading(name) if derived is None else str(name)

@@ -8,6 +8,7 @@ import xarray
 import proprotor as pp
 from proprotor import plots
 from proprotor.plots import small_print
+from proprotor.plots.bars import signed
 from proprotor.plots.input_names import short_name, short_names
 
 matplotlib.use("Agg")
@@ -156,6 +157,11 @@ def test_sensitivity_refuses_what_it_cannot_draw(case, slopes):
         plots.plot_sensitivity(both)
     with pytest.raises(pp.InputError, match="derivatives of"):
         plots.plot_sensitivity(case.sensitivity("eigenvalue", ["rotor.precone"], airspeed="350 kt"))
+
+
+def test_a_change_has_two_digits_and_no_exponent():
+    written = {4.0: "+4.0", -0.058: "−0.058", 9.97: "+10", -9.949: "−9.9", 123.4: "+123", 0.1: "+0.10"}
+    assert {value: signed(value) for value in written} == written
 
 
 def test_attribution_bars_sum_to_zero_and_are_changes_of_the_damping_ratio(origins):

@@ -39,5 +39,5 @@ def write_beside(ax: Axes, place: int, end: float, text: str) -> None:
 
 def signed(value: float) -> str:
     """Return a change as the text beside its bar: two digits, with a sign."""
-    text = f"{value:+.0f}" if abs(value) >= 10 else f"{value:+.2g}"
+    text = f"{value:+.0f}" if abs(value) >= 9.95 else f"{value:+#.2g}"  # 9.97 has an exponent otherwise
     return text.replace("-", "−")
