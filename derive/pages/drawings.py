@@ -91,7 +91,9 @@ def _arrow(
     if text:
         across, along = (end - start) / np.hypot(*(end - start))
         side = "center" if abs(across) < 0.5 else "left" if across > 0 else "right"
-        ax.text(end[0] + 0.05 * across, end[1] + 0.09 * along, text, ha=side, va="center", color=color)
+        place = end[0] + 0.05 * across, end[1] + 0.09 * along
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}  # so that no line strikes the text
+        ax.text(*place, text, ha=side, va="center", color=color, bbox=box)
 
 
 def _arc(ax: Axes, center: ArrayLike, radius: float, start: float, end: float, text: str) -> None:
