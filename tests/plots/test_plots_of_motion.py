@@ -209,6 +209,17 @@ def pictures_of_page(path):
     return [Image.open(io.BytesIO(base64.b64decode(one))).convert("L") for one in encoded]
 
 
+@pytest.mark.parametrize("mode", ["beam", "chord", "torsion"])
+def test_nothing_that_moves_passes_over_the_small_print(case, tmp_path, mode):
+    """In no picture do the lowest rows, of two lines of text, have a pixel of any colour but grey."""
+    animate_mode(mode_motion(case, SPEED, mode), tmp_path / "mode.gif", frames=8)
+    with Image.open(tmp_path / "mode.gif") as film:
+        for frame in range(film.n_frames):
+            film.seek(frame)
+            rows = np.asarray(film.convert("RGB"))[-30:].astype(int)
+            assert rows.min() < 150 and np.ptp(rows, axis=-1).max() < 40
+
+
 def test_a_page_has_the_pictures_of_the_cycle_and_nothing_from_elsewhere(case, tmp_path):
     motion = mode_motion(case, SPEED, "torsion")
     page = animate_mode(motion, tmp_path / "torsion.html", frames=6, dpi=50)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 _SIZE = (8.0, 4.4)  # inches
-_PLACES = {"3d": (0.0, 0.03, 0.49, 0.87), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}
+_PLACES = {"3d": (0.0, 0.12, 0.49, 0.78), "front": (0.46, 0.09, 0.35, 0.76), "side": (0.82, 0.09, 0.17, 0.76)}
 _TITLES = {"3d": "", "front": "from ahead", "side": "from outboard"}
 _COLOURS = 32  # colours of the GIF
 _CANVAS = 16  # bytes for a pixel while one picture is drawn: the canvas, its background, the colours
