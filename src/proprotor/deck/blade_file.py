@@ -139,7 +139,7 @@ def _columns(
             raise Fault(f"line {number}: must have at most {_MOST_STATIONS} stations")
     if len(found["radius"]) < FEWEST_STATIONS:
         raise Fault(f"must have at least {FEWEST_STATIONS} stations, and has {len(found['radius'])}")
-    if found["radius"] and radius is not None:
+    if radius is not None:
         _check_tip(number, own["radius"], found["radius"][-1], radius)
     return {field: np.array(values) for field, values in found.items()}
 

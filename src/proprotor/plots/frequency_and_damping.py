@@ -21,7 +21,13 @@ from proprotor.plots.canvas import (
 )
 from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions
-from proprotor.plots.mode_lines import draw_modes, earlier_sweeps, unstable_lines, write_headline_of_sweeps
+from proprotor.plots.mode_lines import (
+    draw_modes,
+    earlier_sweeps,
+    mark_boundaries,
+    unstable_lines,
+    write_headline_of_sweeps,
+)
 from proprotor.plots.onsets import boundaries_of, fixed_airspeed, told_by
 from proprotor.plots.points import draw_points, frequency_quantity, quantity_of
 from proprotor.plots.style import RING, UNSTABLE, in_style
@@ -251,8 +257,6 @@ def _mark_instability(ax: Axes, sweep: Dataset, line: Positions) -> None:
     ax.axhspan(min(ax.get_ylim()[0], 0), 0, color=UNSTABLE, linewidth=0, zorder=0.5)
     ax.axhline(0, color="black", linewidth=0.8)
     found = boundaries_of(sweep, damping_percent(sweep))
-    ax.plot([one.place / line.factor for one in found], [0.0] * len(found), "o", **RING)
-    if found:
-        note(ax, "Circles, and numbers after names: boundaries, interpolated between points of the sweep")
+    mark_boundaries(ax, [one.place / line.factor for one in found], [0.0] * len(found))
     if not any(text.get_text() == "unstable" for text in ax.texts):
         name_unstable(ax)

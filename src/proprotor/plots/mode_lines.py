@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -14,7 +15,7 @@ from proprotor.plots import small_print
 from proprotor.plots.canvas import grid, note, write_headline
 from proprotor.plots.line_of_sweep import Positions, with_gaps
 from proprotor.plots.onsets import Told, told_by
-from proprotor.plots.style import LABEL_SIZE, UNKNOWN, ModeStyle, mode_styles, of_later_sweep, white_box
+from proprotor.plots.style import LABEL_SIZE, RING, UNKNOWN, ModeStyle, mode_styles, of_later_sweep, white_box
 from proprotor.tables.sweep_summary import broad_modes, leaps, modes_of_interest
 from proprotor.typing import Array, Axes, Dataset, Line2D
 
@@ -108,6 +109,13 @@ def named(ax: Axes, sweep: Dataset, lines: dict[str, Line2D], name: str, told: T
     broad = _broad_lines(kept)
     note(ax, "Thin lines are other modes, without names")
     return broad
+
+
+def mark_boundaries(ax: Axes, x: Sequence[float], y: Sequence[float]) -> None:
+    """Draw a circle at each boundary of a sweep, and tell what circles and the numbers after names are."""
+    ax.plot(x, y, "o", **RING)
+    if x:
+        note(ax, "Circles, and numbers after names: boundaries, interpolated between points of the sweep")
 
 
 def unstable_lines(ax: Axes) -> dict[Line2D, str]:

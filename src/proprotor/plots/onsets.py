@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -151,7 +151,7 @@ def _along_input(ranges: list[UnstableRange], sweep: Dataset, line: Positions) -
     unit = written(line.unit)
     told = []
     for joined in _joined(ranges):
-        ends = (min(joined, key=lambda one: one.start), max(joined, key=lambda one: one.stop))
+        ends = _ends(joined)
         open_ends = (ends[0].open_start, ends[1].open_stop)
         free = [one.mode for one, is_open in zip(ends, open_ends, strict=True) if not is_open]
         modes = dict.fromkeys(free or [one.mode for one in joined[:1]])
@@ -170,9 +170,14 @@ def _joined(ranges: list[UnstableRange]) -> Iterator[list[UnstableRange]]:
     yield group
 
 
-def _words(ranges: Iterable[UnstableRange], sweep: Dataset, line: Positions) -> str:
+def _ends(ranges: list[UnstableRange]) -> tuple[UnstableRange, UnstableRange]:
+    """Return the range that starts first and the one that stops last."""
+    return min(ranges, key=lambda one: one.start), max(ranges, key=lambda one: one.stop)
+
+
+def _words(ranges: list[UnstableRange], sweep: Dataset, line: Positions) -> str:
     """Return in words where ranges that overlap reach: "above 340", "below 9260", "300 to 340" or "throughout"."""
-    first, last = min(ranges, key=lambda one: one.start), max(ranges, key=lambda one: one.stop)
+    first, last = _ends(ranges)
     start, stop = _number(first.start, sweep, line), _number(last.stop, sweep, line)
     if first.open_start:
         return "throughout" if last.open_stop else f"below {stop}"

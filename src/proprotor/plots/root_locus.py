@@ -11,6 +11,7 @@ from proprotor.plots.end_labels import label_lines
 from proprotor.plots.line_of_sweep import Positions, positions, with_gaps, written
 from proprotor.plots.mode_lines import (
     earlier_sweeps,
+    mark_boundaries,
     modes_drawn,
     named,
     styles_beside,
@@ -19,7 +20,7 @@ from proprotor.plots.mode_lines import (
 )
 from proprotor.plots.onsets import boundaries_of, told_by
 from proprotor.plots.points import draw_points
-from proprotor.plots.style import LABEL_SIZE, RING, SMALL_SIZE, UNSTABLE, in_style, white_box
+from proprotor.plots.style import LABEL_SIZE, SMALL_SIZE, UNSTABLE, in_style, white_box
 from proprotor.tables.points import FREQUENCY, GROWTH, Points, Quantity
 from proprotor.tables.sweep_summary import broad_modes, growth_rate, leaps
 from proprotor.typing import Array, Axes, Dataset, Line2D
@@ -104,9 +105,7 @@ def plot_root_locus(
         ends = f"from {at[0]:g} to {at[-1]:g} {written(line.unit)}"
         note(ax, f"Markers every {at[1] - at[0]:g}, growing {ends}")
     crossings = [one.value for one in boundaries_of(sweep, imaginary)]
-    ax.plot(np.zeros(len(crossings)), crossings, "o", **RING)
-    if crossings:
-        note(ax, "Circles, and numbers after names: boundaries, interpolated between points of the sweep")
+    mark_boundaries(ax, [0.0] * len(crossings), crossings)
     label_lines(ax, lines, "growth or frequency", tie=False, more=unstable_lines(ax))
     write_headline_of_sweeps(ax)
     say_origin(ax, sweep.attrs, along(sweep, line))

@@ -50,35 +50,15 @@ _LATER = {  # dashes of the same line of a further sweep on the same axes
 }
 _MARKERS = "s^DvP<>Xp8dhH*"  # on broad lines, because their colours alone do not differ on a grey print
 # Places of motions in the turns of colours and dashes: in every picture of every case a motion looks the same.
-_PLACES = {
-    motion: place
-    for place, motion in enumerate(
-        (
-            *("beam", "chord", "torsion", "coning", "regressive flap", "progressive flap", "collective lag"),
-            *(
-                "regressive lag",
-                "progressive lag",
-                "collective pitch",
-                "regressive pitch",
-                "progressive pitch",
-            ),
-            *("rotor speed", "regressive gimbal", "progressive gimbal"),
-        )
-    )
-} | {
-    # Of aircraft, whose modes of the support are drawn, and of the rotor those alone that become unstable.
-    **{
-        "pylon yaw": 5,
-        "pylon pitch": 4,
-        "axial": 4,
-        "heave": 3,
-        "surge": 10,
-        "pitch": 6,
-        "sway": 11,
-        "roll": 12,
-    },
-    **{"yaw": 13, "beam_2": 7, "chord_2": 8, "torsion_2": 9},
-}
+_TURN = (
+    *("beam", "chord", "torsion", "coning", "regressive flap", "progressive flap", "collective lag"),
+    *("regressive lag", "progressive lag", "collective pitch", "regressive pitch", "progressive pitch"),
+    *("rotor speed", "regressive gimbal", "progressive gimbal"),
+)
+_PLACES = {motion: place for place, motion in enumerate(_TURN)}
+# Of aircraft, whose modes of the support are drawn, and of the rotor those alone that become unstable.
+_PLACES |= {"heave": 3, "pylon pitch": 4, "axial": 4, "pylon yaw": 5, "pitch": 6, "beam_2": 7, "chord_2": 8}
+_PLACES |= {"torsion_2": 9, "surge": 10, "sway": 11, "roll": 12, "yaw": 13}
 
 # Hatches of bars by the status of a number; the bar of a number that was read in a source has no hatch.
 STATUS_HATCHES = {"recalled": "////", "assumed": "xxxx", "calibrated": "...."}
@@ -166,9 +146,8 @@ def mode_places(modes: Iterable[str]) -> dict[str, int]:
     modes = list(dict.fromkeys(modes))
     taken: dict[str, int] = {}
     motions = dict.fromkeys(map(_motion, modes))
-    for motion in sorted(
-        motions, key=lambda motion: _usual_place(motion) is None
-    ):  # those without a place come last
+    # Motions without a place come last.
+    for motion in sorted(motions, key=lambda motion: _usual_place(motion) is None):
         free = (place for place in count(_usual_place(motion) or 0) if place not in taken.values())
         taken[motion] = next(free)
     return {mode: taken[_motion(mode)] for mode in modes}

@@ -15,14 +15,6 @@ from proprotor.stability import places_of
 from proprotor.typing import Array, Axes, Dataset
 
 
-def _largest(values: Array, gradients: Array, unit: str) -> str:
-    """Return the largest of responses (gradients, times, outputs), and the gust that has it."""
-    peaks = np.nan_to_num(np.abs(values)).max(axis=(1, 2))
-    place = int(peaks.argmax())
-    largest = f"{float(f'{peaks[place]:.3g}'):,g}"  # without an exponent
-    return f"largest: {largest} {written(unit)}, in the gust with H = {gradients[place]:.3g} m"
-
-
 @in_style
 def plot_time_response(
     found: Dataset, ax: Axes | None = None, *, outputs: Sequence[str] | str | None = None
@@ -54,6 +46,7 @@ def plot_time_response(
     units = dict.fromkeys(str(found.output_unit.values[column]) for column in columns)
     if len(units) > 1:
         raise InputError("outputs", ", ".join(known[column] for column in columns), "must have one unit")
+    (unit,) = units
     gusts = found.gradient.values.tolist() if "gradient" in found.dims else [None]
     response = found.response if "gradient" in found.dims else found.response.expand_dims("gradient")
     if response.ndim != 3:
@@ -70,12 +63,20 @@ def plot_time_response(
             ax.plot(found.time.values, response.values[row, :, column], label=label, **style)
     ax.axhline(0, color="black", linewidth=0.6)
     names = ", ".join(output_name(known[column]) for column in columns)
-    ax.set(xlabel="Time (s)", ylabel=f"{names[:1].upper()}{names[1:]} ({written(next(iter(units)))})")
+    ax.set(xlabel="Time (s)", ylabel=f"{names[:1].upper()}{names[1:]} ({written(unit)})")
     ax.margins(x=0)
     grid(ax)
     ax.legend()
     if "gradient" in found.dims:
         note(ax, "H: distance in which a gust grows from nothing to its full speed")
-        write_headline(ax, _largest(response.values[..., columns], found.gradient.values, next(iter(units))))
+        write_headline(ax, _largest(response.values[..., columns], found.gradient.values, unit))
     say_origin(ax, found.attrs, filter(None, [str(found.warning.item())]))
     return ax
+
+
+def _largest(values: Array, gradients: Array, unit: str) -> str:
+    """Return the largest of responses (gradients, times, outputs), and the gust that has it."""
+    peaks = np.nan_to_num(np.abs(values)).max(axis=(1, 2))
+    place = int(peaks.argmax())
+    largest = f"{float(f'{peaks[place]:.3g}'):,g}"  # without an exponent
+    return f"largest: {largest} {written(unit)}, in the gust with H = {gradients[place]:.3g} m"
